@@ -1,0 +1,43 @@
+#pragma once
+// What one step of a run leaves behind for the recorder.
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace libslam {
+
+/// A calibration parameter that is a block of the state.
+struct CalibrationValue {
+  std::string name;       ///< e.g. "scale_left"
+  double mean = 0.0;      ///< in the unit of the parameter
+  double sigma = 0.0;     ///< standard deviation of `mean`
+  double prior_mean = 0.0;
+  double prior_sigma = 0.0;
+  bool observable = false;  ///< the data excited it and sigma fell below half of its prior
+};
+
+/// A landmark of the estimated map.
+struct LandmarkEstimate {
+  std::int64_t id = 0;              ///< identity from the log, else a running number
+  std::string type = "point";       ///< kind of landmark
+  Eigen::VectorXd mean;             ///< world coordinates
+  Eigen::MatrixXd cov;              ///< covariance of `mean`
+  int times_seen = 0;
+};
+
+/// One row of trajectory.csv. Covariances are in (x [m], y [m], phi [rad]) of the world frame.
+struct StepRecord {
+  std::int64_t index = 0;  ///< running number of the step
+  double time = 0.0;       ///< [s], as in the log
+  Eigen::Vector3d pose = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d cov = Eigen::Matrix3d::Zero();
+  double nis = 0.0;  ///< normalized innovation squared of the joint update, 0 without update
+  int nis_dof = 0;   ///< degrees of freedom of `nis`
+  int accepted = 0, gated = 0, ambiguous = 0, new_landmarks = 0;
+  std::vector<CalibrationValue> calibration;
+  double step_ms = 0.0;  ///< wall time of the step; never written to trajectory.csv
+};
+
+}  // namespace libslam

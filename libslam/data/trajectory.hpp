@@ -1,0 +1,21 @@
+#pragma once
+// A path of a planar robot: estimated, true, or read from a file.
+
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace libslam {
+
+/// Poses (x [m], y [m], phi [rad]) of the robot in one fixed frame.
+///
+/// `times` [s since 1970] is either empty, then poses belong to the steps of a log by order, or as
+/// long as `poses` and non-decreasing. `has_heading` is false for positions only (GPS); phi is then
+/// 0 and means nothing.
+struct Trajectory {
+  std::vector<double> times;
+  std::vector<Eigen::Vector3d> poses;
+  bool has_heading = true;
+};
+
+}  // namespace libslam

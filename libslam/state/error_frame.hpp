@@ -1,0 +1,58 @@
+#pragma once
+// The error that the covariance describes, and how a correction moves the estimate.
+//
+// Models and stores always speak the additive (standard) error  delta = x - x_hat. An error frame
+// defines another error xi with delta = T(x_hat) xi, T linear in xi. Keeping P in delta and applying
+//     propagate:  P <- F P F^T + Q                      (same as T' F_xi T^-1 in xi)
+//     correct:    delta = K nu  ->  xi = T(x-)^-1 delta, x+ = x- [+] xi  (exact retraction)
+//                 P <- T(x+) T(x-)^-1 P (T(x+) T(x-)^-1)^T
+// is the same filter as one that keeps the covariance of xi, at the cost of one low-rank transport per
+// correction and none in propagation. Derivation: libslam/README.md, section "Error frames".
+
+#include <Eigen/Core>
+#include <libslam/state/gaussian_state.hpp>
+#include <memory>
+#include <string_view>
+
+namespace libslam {
+
+class ErrorFrame {
+ public:
+  virtual ~ErrorFrame() = default;
+  virtual std::string_view name() const = 0;
+  /// Throws std::invalid_argument naming the block if this frame is not derived for it.
+  virtual void require_supported(const BlockSpec& spec) const = 0;
+  /// Moves every estimate by the additive correction `delta` (length: state dimension), which was
+  /// computed at the current estimate, and transports the covariance to the new one. `pose` is the
+  /// block whose heading carries the rotation of the world error.
+  virtual void retract(GaussianState& state, BlockId pose, const VectorRef& delta) = 0;
+};
+
+/// delta added to every block: the EKF of the textbooks.
+class StandardFrame final : public ErrorFrame {
+ public:
+  std::string_view name() const override { return "standard"; }
+  void require_supported(const BlockSpec&) const override {}
+  void retract(GaussianState& state, BlockId pose, const VectorRef& delta) override;
+};
+
+/// Right-invariant error of SE_{1+n}(2): heading theta, position p and every world point m share
+///     xi_theta = delta_theta,  xi_p = delta_p - J p delta_theta,  xi_m = delta_m - J m delta_theta
+/// with J the rotation by +90 degrees; blocks without a world role keep the additive error. Along the
+/// unobservable directions (a shift and a turn of the world) xi does not depend on the estimate, so
+/// the filter cannot gain information on them (Barrau & Bonnabel 2015, arXiv:1510.06263).
+class RightInvariantFrame final : public ErrorFrame {
+ public:
+  std::string_view name() const override { return "right_invariant"; }
+  /// Supported: one SE2 pose, planar points, blocks without a world role.
+  void require_supported(const BlockSpec& spec) const override;
+  void retract(GaussianState& state, BlockId pose, const VectorRef& delta) override;
+
+ private:
+  Eigen::VectorXd moved_;  // u = J (p+ - p-) of every world position, stacked; workspace
+};
+
+/// "standard" or "right_invariant"; throws std::invalid_argument otherwise.
+std::unique_ptr<ErrorFrame> make_error_frame(std::string_view name);
+
+}  // namespace libslam

@@ -1,0 +1,85 @@
+// A filter step in steady state allocates nothing: counted at malloc, which operator new and Eigen use.
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstdlib>
+#include <libslam/filter/ekf.hpp>
+#include <libslam/measurement/range_bearing.hpp>
+#include <random>
+#include <vector>
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define LIBSLAM_COUNTS_MALLOC 0
+#else
+#define LIBSLAM_COUNTS_MALLOC 1
+#endif
+
+#if LIBSLAM_COUNTS_MALLOC
+namespace {
+std::atomic<long> g_allocations{0};
+}  // namespace
+
+extern "C" {
+void* __libc_malloc(std::size_t size);                     // NOLINT(bugprone-reserved-identifier)
+void* malloc(std::size_t size) noexcept {                  // counts, then glibc's own
+  g_allocations.fetch_add(1, std::memory_order_relaxed);
+  return __libc_malloc(size);
+}
+}
+#endif
+
+using namespace libslam;
+
+TEST(Allocation, PropagateInnovateCorrectAreFreeOfItInSteadyState) {
+#if !LIBSLAM_COUNTS_MALLOC
+  GTEST_SKIP() << "sanitizers own malloc";
+#else
+  for (const char* frame : {"standard", "right_invariant"}) {
+    std::mt19937_64 random(41);
+    std::uniform_real_distribution<double> uniform(-20.0, 20.0);
+    GaussianState state;
+    const BlockId pose = state.add({"pose", Chart::kSE2, 3, WorldRole::kPose}, Eigen::Vector3d::Zero(),
+                                   1e-4 * Eigen::Matrix3d::Identity());
+    const RangeBearing model;
+    Feature feature;
+    feature.cov = 1e-2 * Eigen::Matrix2d::Identity();
+    std::vector<BlockId> landmarks;
+    std::vector<Feature> features;
+    for (int i = 0; i < 100; ++i) {
+      feature.z = Eigen::Vector2d(std::abs(uniform(random)) + 1.0, uniform(random) * 0.1);
+      Initialization initialization;
+      model.initialize(state, pose, feature, initialization);
+      landmarks.push_back(state.augment(model.landmark_spec(), initialization));
+      features.push_back(feature);
+    }
+    Ekf ekf(make_error_frame(frame));
+    MotionStep motion;
+    motion.target = pose;
+    motion.cov_noise = 1e-4 * Eigen::Matrix3d::Identity();
+    std::vector<LinearizedMeasurement> measurements(10);
+    const auto step = [&](std::size_t k) {
+      motion.estimate = state.estimate(pose);
+      motion.wrt.clear();
+      motion.wrt.add(pose, 3, 3).setIdentity();
+      ekf.propagate(state, motion);
+      for (std::size_t i = 0; i < measurements.size(); ++i) {
+        const std::size_t which = (k * 7 + i) % landmarks.size();
+        model.linearize(state, pose, landmarks[which], features[which], measurements[i]);
+        ekf.innovate(state, measurements[i]);
+      }
+      return ekf.correct(state, pose, measurements).applied;
+    };
+    ASSERT_TRUE(step(0));
+    const long before = g_allocations.load();
+    bool applied = true;
+    for (std::size_t k = 1; k < 50; ++k) applied = step(k) && applied;
+    const long after = g_allocations.load();
+    EXPECT_TRUE(applied);
+    EXPECT_EQ(after - before, 0) << frame;
+    // The counter can fail: growing the state does allocate.
+    state.reserve(4 * state.dimension());
+    EXPECT_GT(g_allocations.load(), after);
+  }
+#endif
+}

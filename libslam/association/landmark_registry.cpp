@@ -1,0 +1,41 @@
+#include <libslam/association/landmark_registry.hpp>
+
+namespace libslam {
+
+LandmarkRegistry::LandmarkRegistry(int confirm_after, int prune_after, std::int64_t first_number)
+    : confirm_after_(confirm_after), prune_after_(prune_after), next_number_(first_number) {}
+
+std::optional<std::size_t> LandmarkRegistry::find(std::int64_t id) const {
+  const auto found = by_id_.find(id);
+  if (found == by_id_.end()) return std::nullopt;
+  return found->second;
+}
+
+void LandmarkRegistry::add(BlockId block, std::int64_t id) {
+  if (id == kNoIdentity) id = next_number_++;
+  by_id_[id] = landmarks_.size();
+  landmarks_.push_back({block, id, 1, 0, confirm_after_ <= 1});
+}
+
+void LandmarkRegistry::record_sighting(std::size_t landmark) {
+  auto& seen = landmarks_[landmark];
+  if (++seen.times_seen >= confirm_after_) seen.confirmed = true;
+}
+
+std::vector<BlockId> LandmarkRegistry::record_update() {
+  std::vector<BlockId> given_up;
+  for (auto& landmark : landmarks_) {
+    ++landmark.updates;
+    if (prune_after_ > 0 && !landmark.confirmed && landmark.updates > prune_after_)
+      given_up.push_back(landmark.block);
+  }
+  if (given_up.empty()) return given_up;
+  std::erase_if(landmarks_, [this](const RegisteredLandmark& landmark) {
+    return !landmark.confirmed && landmark.updates > prune_after_;
+  });
+  by_id_.clear();
+  for (std::size_t i = 0; i < landmarks_.size(); ++i) by_id_[landmarks_[i].id] = i;
+  return given_up;
+}
+
+}  // namespace libslam

@@ -1,0 +1,47 @@
+#pragma once
+// Which landmarks the map holds: identity, block, how often seen, provisional or confirmed.
+
+#include <cstdint>
+#include <libslam/data/feature.hpp>
+#include <libslam/state/block.hpp>
+#include <map>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace libslam {
+
+struct RegisteredLandmark {
+  BlockId block;
+  std::int64_t id = kNoIdentity;  ///< identity of the log, else a running number
+  int times_seen = 1;
+  int updates = 0;  ///< updates of the filter since the landmark was added
+  bool confirmed = false;
+};
+
+/// A landmark starts provisional, is confirmed after `confirm_after` sightings and is given up when
+/// that has not happened within `prune_after` updates (0: never given up).
+class LandmarkRegistry {
+ public:
+  /// `first_number`: where running numbers begin, beyond every identity of the log.
+  LandmarkRegistry(int confirm_after, int prune_after, std::int64_t first_number = 0);
+
+  std::span<const RegisteredLandmark> landmarks() const { return landmarks_; }
+  std::size_t size() const { return landmarks_.size(); }
+  /// Position of the landmark with an identity from the log.
+  std::optional<std::size_t> find(std::int64_t id) const;
+
+  /// Adds a landmark seen for the first time; without an identity it gets the next running number.
+  void add(BlockId block, std::int64_t id);
+  void record_sighting(std::size_t landmark);
+  /// Counts one update of the filter; removes and returns the landmarks to give up.
+  std::vector<BlockId> record_update();
+
+ private:
+  int confirm_after_, prune_after_;
+  std::int64_t next_number_;
+  std::vector<RegisteredLandmark> landmarks_;
+  std::map<std::int64_t, std::size_t> by_id_;  // identities of the log and running numbers
+};
+
+}  // namespace libslam

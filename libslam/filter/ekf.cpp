@@ -1,0 +1,121 @@
+#include <libslam/filter/ekf.hpp>
+
+#include <Eigen/Cholesky>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+namespace libslam {
+
+namespace {
+
+using Eigen::Index;
+
+[[noreturn]] void throw_shape(const GaussianState& state, BlockId block, const BlockMatrix& jacobian,
+                              Index rows) {
+  throw std::invalid_argument(
+      "Jacobian with respect to block '" + state.spec(block).name + "' is " +
+      std::to_string(jacobian.rows()) + " x " + std::to_string(jacobian.cols()) + ", expected " +
+      std::to_string(rows) + " x " + std::to_string(state.size(block)));
+}
+
+PlacedJacobian place(const GaussianState& state, const BlockJacobian& column, Index rows) {
+  if (column.jacobian.rows() != rows || column.jacobian.cols() != state.size(column.block))
+    throw_shape(state, column.block, column.jacobian, rows);
+  return {state.offset(column.block), column.jacobian};
+}
+
+}  // namespace
+
+Ekf::Ekf(std::unique_ptr<ErrorFrame> frame) : frame_(std::move(frame)) {
+  if (!frame_) throw std::invalid_argument("Ekf needs an error frame");
+}
+
+void Ekf::propagate(GaussianState& state, const MotionStep& step) {
+  const Index d = state.size(step.target);
+  if (step.cov_noise.rows() != d || step.cov_noise.cols() != d)
+    throw_shape(state, step.target, step.cov_noise, d);
+  std::array<PlacedJacobian, BlockJacobians::kCapacity> placed;
+  std::size_t count = 0;
+  for (const auto& column : step.wrt) placed[count++] = place(state, column, d);
+  state.covariance().propagate(state.offset(step.target), std::span(placed.data(), count),
+                               step.cov_noise);
+  state.set_estimate(step.target, step.estimate);
+}
+
+Index Ekf::stack(const GaussianState& state, std::span<const LinearizedMeasurement> measurements) {
+  std::size_t columns = 0;
+  Index m = 0;
+  for (const auto& measurement : measurements) {
+    columns += static_cast<std::size_t>(measurement.wrt.size());
+    m += measurement.innovation.size();
+  }
+  placed_.clear();
+  placed_.reserve(columns);  // spans into placed_ must stay valid
+  rows_.clear();
+  if (s_.rows() < m) {
+    s_.resize(2 * m, 2 * m);
+    nu_.resize(2 * m);
+    white_.resize(2 * m);
+  }
+  Index row = 0;
+  for (const auto& measurement : measurements) {
+    const Index rows = measurement.innovation.size();
+    if (measurement.cov.rows() != rows || measurement.cov.cols() != rows)
+      throw std::invalid_argument("measurement of dimension " + std::to_string(rows) + " has a " +
+                                  std::to_string(measurement.cov.rows()) + " x " +
+                                  std::to_string(measurement.cov.cols()) + " covariance");
+    const std::size_t first = placed_.size();
+    for (const auto& column : measurement.wrt) placed_.push_back(place(state, column, rows));
+    rows_.push_back({row, rows, std::span(placed_.data() + first, placed_.size() - first)});
+    nu_.segment(row, rows) = measurement.innovation;
+    row += rows;
+  }
+  state.covariance().project(rows_, s_.topLeftCorner(m, m));
+  row = 0;
+  for (const auto& measurement : measurements) {
+    const Index rows = measurement.innovation.size();
+    s_.block(row, row, rows, rows) += measurement.cov;
+    row += rows;
+  }
+  return m;
+}
+
+bool Ekf::factorize(Index m) {
+  Eigen::Ref<Eigen::MatrixXd> s = s_.topLeftCorner(m, m);
+  return Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>>(s).info() == Eigen::Success;
+}
+
+double Ekf::squared_distance(Index m) {
+  double sum = 0.0;
+  for (Index k = 0; k < m; ++k) {
+    white_[k] = (nu_[k] - s_.row(k).head(k).dot(white_.head(k))) / s_(k, k);
+    sum += white_[k] * white_[k];
+  }
+  return sum;
+}
+
+Innovation Ekf::innovate(const GaussianState& state, const LinearizedMeasurement& measurement) {
+  const Index m = stack(state, std::span(&measurement, 1));
+  if (!factorize(m)) return {std::numeric_limits<double>::infinity(), 0.0};
+  double log_det = 0.0;
+  for (Index k = 0; k < m; ++k) log_det += 2.0 * std::log(s_(k, k));
+  return {squared_distance(m), log_det};
+}
+
+Correction Ekf::correct(GaussianState& state, BlockId pose,
+                        std::span<const LinearizedMeasurement> measurements) {
+  if (measurements.empty()) return {};
+  const Index m = stack(state, measurements);
+  if (!factorize(m)) return {};
+  const double nis = squared_distance(m);
+  const Index n = state.dimension();
+  if (delta_.size() < n) delta_.resize(2 * n);
+  state.covariance().correct(rows_, s_.topLeftCorner(m, m), nu_.head(m), delta_.head(n));
+  frame_->retract(state, pose, delta_.head(n));
+  return {true, nis, static_cast<int>(m)};
+}
+
+}  // namespace libslam

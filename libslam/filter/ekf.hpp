@@ -1,0 +1,68 @@
+#pragma once
+// The core: propagate, innovate, correct. It takes numbers, not models.
+//
+//   propagate   x <- f(x),  P <- F P F^T + Q                       (given f(x), F, Q)
+//   innovate    S = H P H^T + R,  d^2 = nu^T S^-1 nu                (given nu, H, R)
+//   correct     delta = P H^T S^-1 nu,  P <- P - P H^T S^-1 H P,  retraction by the error frame
+//
+// Symbols: libslam/README.md. S is factored by Cholesky; no matrix is inverted; P stays symmetric by
+// construction. In steady state (no growth of state or observation count) a step does not allocate.
+
+#include <Eigen/Core>
+#include <libslam/state/error_frame.hpp>
+#include <libslam/state/gaussian_state.hpp>
+#include <libslam/state/linearization.hpp>
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace libslam {
+
+/// How well one measurement fits the state.
+struct Innovation {
+  double mahalanobis2 = 0.0;  ///< nu^T S^-1 nu
+  double log_det = 0.0;       ///< log |S|
+};
+
+/// Outcome of a joint correction.
+struct Correction {
+  bool applied = false;  ///< false: S was not positive definite; the state is untouched
+  double nis = 0.0;      ///< nu^T S^-1 nu of the stacked measurements
+  int dof = 0;
+};
+
+class Ekf {
+ public:
+  /// Throws std::invalid_argument if `frame` is null.
+  explicit Ekf(std::unique_ptr<ErrorFrame> frame);
+
+  const ErrorFrame& frame() const { return *frame_; }
+
+  /// Moves the target block of `step`. Throws std::invalid_argument naming the block and sizes when
+  /// a Jacobian does not fit its block.
+  void propagate(GaussianState& state, const MotionStep& step);
+
+  /// Compatibility of one measurement with the state; the state is not changed. The distance is
+  /// infinite where S is not positive definite.
+  Innovation innovate(const GaussianState& state, const LinearizedMeasurement& measurement);
+
+  /// Joint update with all measurements stacked. `pose` is the reference pose of the error frame.
+  Correction correct(GaussianState& state, BlockId pose,
+                     std::span<const LinearizedMeasurement> measurements);
+
+ private:
+  /// Stacks rows_, s_ = H P H^T + R and nu_; returns the number of rows.
+  Eigen::Index stack(const GaussianState& state, std::span<const LinearizedMeasurement> measurements);
+  /// Cholesky factor of the leading m x m part of s_ in place; false if not positive definite.
+  bool factorize(Eigen::Index m);
+  /// nu^T S^-1 nu from the factor in s_.
+  double squared_distance(Eigen::Index m);
+
+  std::unique_ptr<ErrorFrame> frame_;
+  std::vector<PlacedJacobian> placed_;
+  std::vector<JacobianRows> rows_;
+  Eigen::MatrixXd s_;
+  Eigen::VectorXd nu_, white_, delta_;
+};
+
+}  // namespace libslam

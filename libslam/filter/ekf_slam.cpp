@@ -1,0 +1,213 @@
+#include <libslam/filter/ekf_slam.hpp>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+namespace libslam {
+
+namespace {
+
+/// A parameter counts as observed when the data halved its standard deviation.
+constexpr double kObservedRatio = 0.5;
+
+EkfSlamParts checked(EkfSlamParts parts) {
+  if (!parts.motion || !parts.measurement || !parts.associator || !parts.frame)
+    throw std::invalid_argument(
+        "EkfSlam needs a motion model, a measurement model, an associator and an error frame");
+  return parts;
+}
+
+std::vector<double> nominal_values(const MotionModel& motion) {
+  std::vector<double> nominal;
+  for (const auto& parameter : motion.calibration())
+    nominal.push_back(parameter.prior_mean == 0.0 ? 1.0 : parameter.prior_mean);
+  return nominal;
+}
+
+}  // namespace
+
+UpdateOutcome& UpdateOutcome::operator+=(const UpdateOutcome& other) {
+  nis += other.nis;
+  nis_dof += other.nis_dof;
+  accepted += other.accepted;
+  gated += other.gated;
+  ambiguous += other.ambiguous;
+  new_landmarks += other.new_landmarks;
+  verdicts.insert(verdicts.end(), other.verdicts.begin(), other.verdicts.end());
+  return *this;
+}
+
+/// Innovations of feature-landmark pairs, with a cheap bound that skips pairs far apart.
+class EkfSlam::PairTest final : public Compatibility {
+ public:
+  PairTest(EkfSlam& filter, std::span<const Feature> features)
+      : filter_(filter), features_(features) {}
+
+  std::optional<Match> test(std::size_t feature, std::size_t landmark, double limit) override {
+    const BlockId block = filter_.parts_.registry.landmarks()[landmark].block;
+    if (std::isfinite(limit) && far_apart(feature, block, limit)) return std::nullopt;
+    filter_.parts_.measurement->linearize(filter_.state_, filter_.pose_, block, features_[feature],
+                                          measurement_);
+    const Innovation innovation = filter_.ekf_.innovate(filter_.state_, measurement_);
+    return Match{innovation.mahalanobis2, innovation.log_det};
+  }
+
+ private:
+  // In landmark space e = l_feature - l_map has covariance C <= 2 (C_feature + C_map), whatever their
+  // correlation, and e^T C^-1 e >= |e|^2 / trace(C).
+  bool far_apart(std::size_t feature, BlockId landmark, double limit) {
+    const GaussianState& state = filter_.state_;
+    if (feature != prepared_) {
+      filter_.parts_.measurement->initialize(state, filter_.pose_, features_[feature], where_);
+      trace_ = where_.cov_noise.trace();
+      for (const auto& [block, jacobian] : where_.wrt) {
+        const BlockMatrix spread = jacobian * state.covariance_of(block);
+        trace_ += spread.cwiseProduct(jacobian).sum();
+      }
+      prepared_ = feature;
+    }
+    const double distance2 = (where_.estimate - state.estimate(landmark)).squaredNorm();
+    return distance2 > limit * 2.0 * (trace_ + state.covariance_of(landmark).trace());
+  }
+
+  EkfSlam& filter_;
+  std::span<const Feature> features_;
+  LinearizedMeasurement measurement_;
+  Initialization where_;
+  std::size_t prepared_ = static_cast<std::size_t>(-1);
+  double trace_ = 0.0;
+};
+
+EkfSlam::EkfSlam(EkfSlamParts parts)
+    : parts_(checked(std::move(parts))),
+      ekf_(std::move(parts_.frame)),
+      excitation_(nominal_values(*parts_.motion)) {
+  ekf_.frame().require_supported(parts_.measurement->landmark_spec());
+  pose_ = state_.add({"pose", Chart::kSE2, 3, WorldRole::kPose}, Eigen::Vector3d::Zero(),
+                     parts_.cov_start);
+  add_calibration();
+}
+
+void EkfSlam::add_calibration() {
+  for (const auto& parameter : parts_.motion->calibration())
+    calibration_.push_back(
+        state_.add({parameter.name, Chart::kVector, 1, WorldRole::kNone},
+                   Eigen::VectorXd::Constant(1, parameter.prior_mean),
+                   Eigen::MatrixXd::Constant(1, 1, parameter.prior_sigma * parameter.prior_sigma)));
+  calibration_jacobian_.resize(3, static_cast<Eigen::Index>(calibration_.size()));
+}
+
+void EkfSlam::propagate(const MotionAction* action) {
+  const PhaseTimer timer(times_, Phase::kPredict);
+  if (action == nullptr) {
+    state_.covariance().add_noise(state_.offset(pose_), parts_.cov_no_odometry);
+    return;
+  }
+  parts_.motion->linearize(state_, pose_, calibration_, *action, step_);
+  if (!calibration_.empty()) drop_unexcited(*action);
+  ekf_.propagate(state_, step_);
+  const auto& parameters = parts_.motion->calibration();
+  for (std::size_t i = 0; i < calibration_.size(); ++i) {
+    const double walk = parameters[i].random_walk;
+    if (walk > 0.0 && action->dt > 0.0)
+      state_.covariance().add_noise(state_.offset(calibration_[i]),
+                                    BlockMatrix::Constant(1, 1, walk * walk * action->dt));
+  }
+}
+
+void EkfSlam::drop_unexcited(const MotionAction& action) {
+  const Eigen::Rotation2Dd R_robot_world(-state_.estimate(pose_)[2]);
+  Eigen::Matrix3d to_robot = Eigen::Matrix3d::Identity();
+  to_robot.topLeftCorner<2, 2>() = R_robot_world.toRotationMatrix();
+  calibration_jacobian_.setZero();
+  for (auto& [block, jacobian] : step_.wrt)
+    for (std::size_t i = 0; i < calibration_.size(); ++i)
+      if (block == calibration_[i])
+        calibration_jacobian_.col(static_cast<Eigen::Index>(i)) = to_robot * jacobian;
+  excitation_.observe(calibration_jacobian_, to_robot * step_.cov_noise * to_robot.transpose(),
+                      action.dt);
+  for (auto& [block, jacobian] : step_.wrt)
+    for (std::size_t i = 0; i < calibration_.size(); ++i)
+      if (block == calibration_[i] && !excitation_.excited(i)) jacobian.setZero();
+}
+
+UpdateOutcome EkfSlam::update(std::span<const Feature> features) {
+  UpdateOutcome outcome;
+  {
+    const PhaseTimer timer(times_, Phase::kAssociate);
+    PairTest test(*this, features);
+    parts_.associator->associate(features, parts_.registry, test, verdicts_);
+    accepted_.clear();
+    accepted_.reserve(features.size());
+    for (std::size_t i = 0; i < features.size(); ++i) {
+      const Verdict& verdict = verdicts_[i];
+      if (verdict.outcome == Outcome::kGated) ++outcome.gated;
+      if (verdict.outcome == Outcome::kAmbiguous) ++outcome.ambiguous;
+      if (verdict.outcome != Outcome::kPaired) continue;
+      const BlockId landmark = parts_.registry.landmarks()[verdict.landmark].block;
+      parts_.measurement->linearize(state_, pose_, landmark, features[i], accepted_.emplace_back());
+    }
+  }
+  {
+    const PhaseTimer timer(times_, Phase::kUpdate);
+    const Correction correction = ekf_.correct(state_, pose_, accepted_);
+    if (correction.applied) {
+      outcome.accepted = static_cast<int>(accepted_.size());
+      outcome.nis = correction.nis;
+      outcome.nis_dof = correction.dof;
+    }
+  }
+  add_landmarks(features, outcome);
+  return outcome;
+}
+
+void EkfSlam::add_landmarks(std::span<const Feature> features, UpdateOutcome& outcome) {
+  const PhaseTimer timer(times_, Phase::kAugment);
+  for (const Verdict& verdict : verdicts_)
+    if (verdict.outcome == Outcome::kPaired) parts_.registry.record_sighting(verdict.landmark);
+  for (std::size_t i = 0; i < features.size(); ++i) {
+    if (verdicts_[i].outcome != Outcome::kNew) continue;
+    parts_.measurement->initialize(state_, pose_, features[i], initialization_);
+    const BlockId block = state_.augment(parts_.measurement->landmark_spec(), initialization_);
+    verdicts_[i].landmark = parts_.registry.size();
+    parts_.registry.add(block, features[i].id);
+    ++outcome.new_landmarks;
+  }
+  outcome.verdicts = verdicts_;
+  for (const BlockId given_up : parts_.registry.record_update()) state_.remove(given_up);
+}
+
+std::vector<CalibrationValue> EkfSlam::calibration() const {
+  std::vector<CalibrationValue> values;
+  for (std::size_t i = 0; i < calibration_.size(); ++i) {
+    const CalibrationSpec& parameter = parts_.motion->calibration()[i];
+    const double sigma = std::sqrt(state_.covariance_of(calibration_[i])(0, 0));
+    values.push_back({parameter.name, state_.estimate(calibration_[i])[0], sigma,
+                      parameter.prior_mean, parameter.prior_sigma,
+                      sigma < kObservedRatio * parameter.prior_sigma});
+  }
+  return values;
+}
+
+std::vector<LandmarkEstimate> EkfSlam::landmarks(bool with_provisional) const {
+  std::vector<LandmarkEstimate> map;
+  for (const auto& landmark : parts_.registry.landmarks()) {
+    if (!landmark.confirmed && !with_provisional) continue;
+    map.push_back({landmark.id, "point", state_.estimate(landmark.block),
+                   state_.covariance_of(landmark.block), landmark.times_seen});
+  }
+  std::sort(map.begin(), map.end(),
+            [](const LandmarkEstimate& a, const LandmarkEstimate& b) { return a.id < b.id; });
+  return map;
+}
+
+bool EkfSlam::healthy() const {
+  const auto pose = state_.estimate(pose_);
+  const Eigen::Vector3d variances = state_.covariance_of(pose_).diagonal();
+  return pose.allFinite() && variances.allFinite() && (variances.array() >= 0.0).all();
+}
+
+}  // namespace libslam

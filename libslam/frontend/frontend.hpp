@@ -1,0 +1,29 @@
+#pragma once
+// Contract of front-ends: MRPT observations in, features out. A front-end never sees the filter.
+//
+// Given   a sensory frame of the log,
+// Then    `extract` returns one batch of features per usable observation, in the order of the log;
+//         unusable measurements (not finite, range not positive, noise not positive) are left out and
+//         counted, never thrown.
+
+#include <mrpt/obs/CSensoryFrame.h>
+
+#include <cstdint>
+#include <libslam/data/feature.hpp>
+#include <vector>
+
+namespace libslam {
+
+/// Features of one observation: at most one of them belongs to any landmark.
+using FeatureBatch = std::vector<Feature>;
+
+class Frontend {
+ public:
+  virtual ~Frontend() = default;
+  /// Overwrites `batches`.
+  virtual void extract(const mrpt::obs::CSensoryFrame& frame, std::vector<FeatureBatch>& batches) = 0;
+  /// Measurements left out so far because they were unusable.
+  virtual std::int64_t unusable() const = 0;
+};
+
+}  // namespace libslam

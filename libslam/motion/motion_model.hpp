@@ -1,0 +1,47 @@
+#pragma once
+// Contract of motion models.
+//
+// Given   a state that holds the blocks the model asked for, and one odometry step,
+// Then    `linearize` returns the new pose, its derivatives with respect to the pose and to every
+//         calibration block, and the process noise, all in the additive (standard) chart of the blocks;
+//         the state is not touched;
+// and     `sample` draws a new pose from the same distribution.
+
+#include <Eigen/Core>
+#include <libslam/data/motion_action.hpp>
+#include <libslam/state/gaussian_state.hpp>
+#include <random>
+#include <string>
+#include <vector>
+
+namespace libslam {
+
+/// A calibration parameter as a block of the state.
+struct CalibrationSpec {
+  std::string name;           ///< block name, e.g. "scale_left"
+  double prior_mean = 1.0;
+  double prior_sigma = 0.0;   ///< standard deviation of the prior, > 0
+  double random_walk = 0.0;   ///< standard deviation per sqrt(second)
+};
+
+/// The calibration blocks of a model inside a state, in the order of `calibration()`.
+using CalibrationBlocks = std::vector<BlockId>;
+
+class MotionModel {
+ public:
+  virtual ~MotionModel() = default;
+
+  /// The parameters that are switched on, in the order the model expects their blocks.
+  virtual const std::vector<CalibrationSpec>& calibration() const = 0;
+
+  /// `pose`: SE2 block; `blocks`: as `calibration()`. Fills `step` completely.
+  /// Throws std::invalid_argument if the action lacks the input that the model is configured for.
+  virtual void linearize(const GaussianState& state, BlockId pose, const CalibrationBlocks& blocks,
+                         const MotionAction& action, MotionStep& step) const = 0;
+
+  /// Draws the pose after `action` from `pose` with the calibration values given.
+  virtual Eigen::Vector3d sample(const Eigen::Vector3d& pose, const Eigen::VectorXd& calibration,
+                                 const MotionAction& action, std::mt19937_64& random) const = 0;
+};
+
+}  // namespace libslam

@@ -1,0 +1,36 @@
+#include <libslam/policy/excitation.hpp>
+
+#include <Eigen/Cholesky>
+
+namespace libslam {
+
+Excitation::Excitation(std::vector<double> nominal)
+    : nominal_(std::move(nominal)),
+      jacobian_(Eigen::Matrix3Xd::Zero(3, static_cast<Eigen::Index>(nominal_.size()))),
+      mean_snr_(Eigen::VectorXd::Zero(jacobian_.cols())),
+      excited_(nominal_.size(), false) {}
+
+void Excitation::observe(const Eigen::Ref<const Eigen::Matrix3Xd>& jacobian,
+                         const Eigen::Matrix3d& noise, double dt) {
+  jacobian_ += jacobian;
+  noise_ += noise;
+  elapsed_ += dt > 0.0 ? dt : kWindow;
+  if (elapsed_ >= kWindow) close_window();
+}
+
+void Excitation::close_window() {
+  // A noise-free direction is known exactly: the floor only keeps the factorization defined.
+  const double floor = 1e-12 + 1e-9 * noise_.trace();
+  const Eigen::LLT<Eigen::Matrix3d> factor(noise_ + floor * Eigen::Matrix3d::Identity());
+  for (Eigen::Index i = 0; i < jacobian_.cols(); ++i) {
+    const Eigen::Vector3d scaled = nominal_[static_cast<std::size_t>(i)] * jacobian_.col(i);
+    const double snr = factor.matrixL().solve(scaled).squaredNorm();
+    mean_snr_[i] = kForgetting * mean_snr_[i] + (1.0 - kForgetting) * snr;
+    excited_[static_cast<std::size_t>(i)] = mean_snr_[i] > kThreshold;
+  }
+  jacobian_.setZero();
+  noise_.setZero();
+  elapsed_ = 0.0;
+}
+
+}  // namespace libslam

@@ -1,0 +1,40 @@
+#include <gtest/gtest.h>
+
+#include <libslam/association/landmark_registry.hpp>
+
+using namespace libslam;
+
+TEST(LandmarkRegistry, ConfirmsAfterSightingsAndGivesUpTheRest) {
+  LandmarkRegistry registry(3, 4);
+  registry.add(BlockId{10}, 7);
+  registry.add(BlockId{11}, kNoIdentity);
+  registry.record_sighting(0);
+  registry.record_sighting(0);
+  EXPECT_TRUE(registry.landmarks()[0].confirmed);
+  EXPECT_FALSE(registry.landmarks()[1].confirmed);
+  for (int update = 0; update < 4; ++update) EXPECT_TRUE(registry.record_update().empty());
+  const std::vector<BlockId> given_up = registry.record_update();
+  ASSERT_EQ(given_up.size(), 1u);
+  EXPECT_EQ(given_up[0], BlockId{11});
+  ASSERT_EQ(registry.size(), 1u);
+  EXPECT_EQ(*registry.find(7), 0u);
+  EXPECT_EQ(registry.landmarks()[0].times_seen, 3);
+}
+
+TEST(LandmarkRegistry, RunningNumbersAreNeverReused) {
+  LandmarkRegistry registry(2, 1, 100);
+  registry.add(BlockId{1}, kNoIdentity);
+  EXPECT_EQ(registry.landmarks()[0].id, 100);
+  registry.record_update();
+  ASSERT_EQ(registry.record_update().size(), 1u);
+  registry.add(BlockId{2}, kNoIdentity);
+  EXPECT_EQ(registry.landmarks()[0].id, 101);
+  EXPECT_FALSE(registry.find(100).has_value());
+}
+
+TEST(LandmarkRegistry, WithoutPruningNothingIsGivenUp) {
+  LandmarkRegistry registry(5, 0);
+  registry.add(BlockId{1}, 3);
+  for (int update = 0; update < 100; ++update) ASSERT_TRUE(registry.record_update().empty());
+  EXPECT_EQ(registry.size(), 1u);
+}

@@ -1,0 +1,232 @@
+// slam-run: a rawlog and a configuration in, path, map, uncertainty and report out.
+
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <atomic>
+#include <csignal>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <libslam/config/config_error.hpp>
+#include <libslam/config/help.hpp>
+#include <libslam/config/ini_loader.hpp>
+#include <libslam/config/validation.hpp>
+#include <libslam/config/version.hpp>
+#include <libslam/config/yaml_loader.hpp>
+#include <libslam/io/input_error.hpp>
+#include <libslam/io/truth_reader.hpp>
+#include <libslam/pipeline/run.hpp>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace {
+
+namespace fs = std::filesystem;
+using namespace libslam;
+
+enum ExitCode { kDone = 0, kCommandLine = 2, kConfiguration = 3, kInput = 4 };
+
+std::atomic<bool> g_stop{false};
+
+struct Arguments {
+  std::string config, rawlog, out, truth, truth_map, input_policy;
+  std::vector<std::string> settings;
+  std::string help_config;
+  std::uint64_t seed = 0;
+  int threads = 1;
+  double speed = 0.0;
+  bool force = false, quiet = false, verbose = false, print_config = false;
+};
+
+/// Prints lines and remembers them for log.txt.
+class Console {
+ public:
+  explicit Console(bool quiet) : quiet_(quiet), terminal_(isatty(STDERR_FILENO) != 0) {}
+
+  void say(const std::string& line) {
+    log_ << line << '\n';
+    if (!quiet_) std::cout << line << '\n';
+  }
+  void warn(const std::string& line) {
+    log_ << line << '\n';
+    clear_progress();
+    std::cerr << line << '\n';
+  }
+  void progress(double fraction) {
+    const int percent = static_cast<int>(100.0 * fraction);
+    if (quiet_ || !terminal_ || percent == shown_) return;
+    shown_ = percent;
+    std::fprintf(stderr, "\r[%-40.*s] %3d %%", 40, std::string(percent * 2 / 5, '#').c_str(), percent);
+  }
+  void clear_progress() {
+    if (shown_ >= 0) std::fputs("\r\033[K", stderr);
+    shown_ = -1;
+  }
+  void save(const fs::path& file) const { std::ofstream(file) << log_.str(); }
+
+ private:
+  bool quiet_, terminal_;
+  int shown_ = -1;
+  std::ostringstream log_;
+};
+
+fs::path fresh_directory(const std::string& rawlog) {
+  const std::string stem = "run-" + fs::path(rawlog).stem().string() + "-";
+  for (int i = 1;; ++i)
+    if (const fs::path candidate = stem + std::to_string(i); !fs::exists(candidate)) return candidate;
+}
+
+struct Job {
+  Parameters parameters;
+  ParameterPlaces places;
+  TruthFiles truth;
+  std::vector<std::string> notes;
+};
+
+/// Reads the configuration, completes the arguments with what an ini file names.
+Job load(Arguments& arguments) {
+  Job job;
+  const std::string extension = fs::path(arguments.config).extension();
+  if (arguments.rawlog.empty() && extension == ".rawlog") std::swap(arguments.rawlog, arguments.config);
+  if (extension == ".ini") {
+    KfSlamIni ini = load_kf_slam_ini(arguments.config);
+    job.parameters = ini.parameters;
+    job.notes = ini.notes;
+    if (arguments.rawlog.empty()) arguments.rawlog = ini.rawlog_file.value_or("");
+    job.truth.path = ini.ground_truth_file_robot.value_or("");
+    job.truth.landmarks = ini.ground_truth_file.value_or("");
+  } else if (!arguments.config.empty()) {
+    job.parameters = load_yaml(arguments.config, &job.places);
+  }
+  for (const auto& setting : arguments.settings)
+    set_parameter(job.parameters, setting, &job.places);
+  if (!arguments.input_policy.empty())
+    set_parameter(job.parameters, "input.policy=" + arguments.input_policy, &job.places);
+  validate(job.parameters, job.places);
+  if (!arguments.rawlog.empty() && job.truth.path.empty()) job.truth = find_truth(arguments.rawlog);
+  if (!arguments.truth.empty()) job.truth.path = arguments.truth;
+  if (!arguments.truth_map.empty()) job.truth.landmarks = arguments.truth_map;
+  return job;
+}
+
+std::string number(double value, const char* format = "%.4g") {
+  char text[64];
+  std::snprintf(text, sizeof(text), format, value);
+  return text;
+}
+
+void report(const RunSummary& summary, const fs::path& directory, Console& console) {
+  const auto& timing = summary.timing;
+  console.say(summary.status + ": " + std::to_string(timing.steps) + " steps, " +
+              std::to_string(summary.result.landmarks) + " landmarks, " + number(timing.wall_s) + " s");
+  for (const auto& parameter : summary.result.calibration)
+    console.say("  " + parameter.name + " = " + number(parameter.mean, "%.5f") + " +- " +
+                number(parameter.sigma, "%.5f") +
+                (parameter.observable ? "" : "  (not observable in this log)"));
+  if (summary.truth && summary.truth->path) {
+    const auto& path = *summary.truth->path;
+    if (path.raw) console.say("  path error (RMSE): " + number(path.raw->rmse_m) + " m raw");
+    if (path.aligned) console.say("  path error (RMSE): " + number(path.aligned->rmse_m) + " m aligned");
+  }
+  if (summary.truth && summary.truth->map && summary.truth->map->rmse_aligned_m)
+    console.say("  map error (RMSE): " + number(*summary.truth->map->rmse_aligned_m) + " m aligned, " +
+                std::to_string(summary.truth->map->missed) + " missed, " +
+                std::to_string(summary.truth->map->duplicates) + " duplicates");
+  if (summary.truth && summary.truth->nees)
+    console.say("  mean NEES of the pose: " + number(summary.truth->nees->mean) + " (ideal 3)");
+  for (const auto& warning : summary.input.warnings) console.warn("warning: " + warning);
+  const fs::path page = directory / "report.html";
+  console.say((fs::exists(page) ? "report: " + page.string() : "results: " + directory.string()));
+}
+
+int run(Arguments arguments) {
+  Console console(arguments.quiet);
+  Job job = load(arguments);
+  if (arguments.print_config) {
+    std::cout << to_yaml(job.parameters);
+    return kDone;
+  }
+  if (arguments.rawlog.empty())
+    throw CLI::RequiredError("a rawlog (slam-run [CONFIG] RAWLOG)");
+  for (const auto& note : job.notes) console.warn("note: " + note);
+
+  RunRequest request;
+  request.program = "slam-run";
+  request.rawlog = arguments.rawlog;
+  request.parameters = job.parameters;
+  request.truth = read_truth(job.truth);
+  request.directory = arguments.out.empty() ? fresh_directory(arguments.rawlog) : fs::path(arguments.out);
+  request.force = arguments.force;
+  request.seed = arguments.seed;
+  request.threads = arguments.threads;
+  if (arguments.speed > 0.0) request.pacing = {PaceMode::kRealTime, arguments.speed, nullptr};
+  request.stop = &g_stop;
+  request.on_step = [&console](double fraction, const StepRecord&) { console.progress(fraction); };
+  const RunSummary summary = run_rawlog(request);
+  console.clear_progress();
+  report(summary, request.directory, console);
+  console.save(request.directory / "log.txt");
+  return summary.exit_code;
+}
+
+void add_options(CLI::App& app, Arguments& arguments) {
+  app.add_option("config", arguments.config,
+                 "Configuration: a .yaml file, or an ini file of MRPT's kf-slam; left out: the defaults");
+  app.add_option("rawlog", arguments.rawlog, "The log to process");
+  app.add_option("--out", arguments.out, "Run directory; default: a new one, run-LOG-N");
+  app.add_flag("--force", arguments.force, "Replace the files of an earlier run in --out");
+  app.add_option("--set", arguments.settings, "section.key=value, repeatable")->allow_extra_args(false);
+  app.add_option("--truth", arguments.truth, "True path (TUM, or MRPT's text form); default: beside the rawlog");
+  app.add_option("--truth-map", arguments.truth_map, "True landmarks (id,x,y or MRPT's text form)");
+  app.add_option("--input-policy", arguments.input_policy, "strict, skip or repair");
+  app.add_option("--speed", arguments.speed, "Play at this multiple of real time; default: as fast as possible")
+      ->check(CLI::PositiveNumber);
+  app.add_option("--seed", arguments.seed, "Seed of random numbers; recorded in run.json");
+  app.add_option("--threads", arguments.threads, "Most threads to use")->check(CLI::PositiveNumber);
+  app.add_flag("--print-config", arguments.print_config, "Print the effective configuration and stop");
+  app.add_option("--help-config", arguments.help_config, "Print every configuration key: text or markdown")
+      ->expected(0, 1)
+      ->default_str("text")
+      ->check(CLI::IsMember({"text", "markdown"}));
+  app.add_flag("-q,--quiet", arguments.quiet, "Print warnings and errors only");
+  app.add_flag("-v,--verbose", arguments.verbose, "Print more");
+  app.set_version_flag("--version", "slam-run " + std::string(version()) + " (" +
+                                        std::string(git_revision()) + ")");
+  app.footer("Example: slam-run config/range_bearing.yaml kf-slam_demo.rawlog --out run1");
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("Runs SLAM over an MRPT rawlog: path, map, uncertainty, calibrated odometry, report.");
+  Arguments arguments;
+  add_options(app, arguments);
+  try {
+    app.parse(argc, argv);
+    if (app.count("--help-config") > 0) {
+      std::cout << (arguments.help_config == "markdown" ? help_markdown() : help_text());
+      return kDone;
+    }
+    std::signal(SIGINT, [](int) { g_stop = true; });
+    std::signal(SIGTERM, [](int) { g_stop = true; });
+    return run(arguments);
+  } catch (const CLI::ParseError& e) {
+    return app.exit(e) == 0 ? kDone : kCommandLine;
+  } catch (const ConfigError& e) {
+    std::cerr << "slam-run: " << e.what() << '\n';
+    return kConfiguration;
+  } catch (const std::invalid_argument& e) {
+    std::cerr << "slam-run: " << e.what() << '\n';
+    return kConfiguration;
+  } catch (const InputError& e) {
+    std::cerr << "slam-run: " << e.what() << '\n';
+    return kInput;
+  } catch (const std::exception& e) {
+    std::cerr << "slam-run: " << e.what() << '\n';
+    return kCommandLine;
+  }
+}

@@ -1,0 +1,52 @@
+#pragma once
+// map.simplemap: key poses with what was seen there, for MRPT's map building tools.
+
+#include <filesystem>
+#include <vector>
+
+#include <Eigen/Core>
+#include <mrpt/obs/CSensoryFrame.h>
+
+namespace libslam {
+
+/// Collects (pose, frame) pairs while a run goes and writes them as a mrpt::maps::CSimpleMap.
+///
+/// A pair is kept where the robot moved far enough from the last kept one. Beyond `max_pairs` every
+/// second pair is dropped and the spacing doubled, so that memory holds at most that many frames.
+/// Frames are shared, not copied: the caller must not change a frame that was handed in.
+class SimpleMapWriter {
+ public:
+  struct Spacing {
+    double distance_m = 0.5;
+    double turn_rad = 0.35;
+  };
+
+  /// Throws std::invalid_argument where max_pairs < 2 or a spacing is negative.
+  explicit SimpleMapWriter(Spacing spacing, std::size_t max_pairs = 2000);
+  SimpleMapWriter() : SimpleMapWriter(Spacing{}) {}
+
+  /// Pose (x [m], y [m], phi [rad]) with its additive covariance, and the frame seen there; null
+  /// frames are ignored.
+  void add(const Eigen::Vector3d& pose, const Eigen::Matrix3d& cov,
+           const mrpt::obs::CSensoryFrame::Ptr& frame);
+
+  std::size_t size() const { return pairs_.size(); }
+
+  /// Replaces `file` at once or not at all. Throws std::runtime_error naming it where it cannot be
+  /// written.
+  void write(const std::filesystem::path& file) const;
+
+ private:
+  struct Pair {
+    Eigen::Vector3d pose;
+    Eigen::Matrix3d cov;
+    mrpt::obs::CSensoryFrame::Ptr frame;
+  };
+  void drop_every_second();
+
+  Spacing spacing_;
+  std::size_t max_pairs_;
+  std::vector<Pair> pairs_;
+};
+
+}  // namespace libslam

@@ -1,0 +1,233 @@
+#include <mrpt/io/CFileGZOutputStream.h>
+#include <mrpt/obs/CActionCollection.h>
+#include <mrpt/obs/CActionRobotMovement2D.h>
+#include <mrpt/obs/CObservationBearingRange.h>
+#include <mrpt/obs/CObservationOdometry.h>
+#include <mrpt/obs/CSensoryFrame.h>
+#include <mrpt/poses/CPosePDFGaussian.h>
+#include <mrpt/serialization/CArchive.h>
+
+#include <cmath>
+#include <filesystem>
+#include <libslam/io/arc_motion.hpp>
+#include <libslam/io/importers/imported_log.hpp>
+#include <libslam/map/csv_text.hpp>
+#include <libslam/result/atomic_file.hpp>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+namespace libslam {
+namespace {
+
+using mrpt::obs::CObservationBearingRange;
+
+mrpt::poses::CPose2D to_pose(const Eigen::Vector3d& p) { return {p.x(), p.y(), p.z()}; }
+
+CObservationBearingRange::TMeasurement to_measurement(const ImportedSighting& sighting) {
+  CObservationBearingRange::TMeasurement m{};
+  m.range = static_cast<float>(sighting.range);
+  m.yaw = static_cast<float>(sighting.bearing);
+  m.landmarkID = static_cast<std::int32_t>(sighting.id);
+  if (sighting.cov) {
+    m.covariance(0, 0) = (*sighting.cov)(0, 0);
+    m.covariance(0, 1) = m.covariance(1, 0) = (*sighting.cov)(0, 1);
+    m.covariance(1, 1) = (*sighting.cov)(1, 1);
+  }
+  return m;
+}
+
+/// Writes one log; keeps the odometry pose.
+class RawlogWriter {
+ public:
+  RawlogWriter(const ImportedLog& log, const std::string& file) : log_(log) {
+    if (!out_.open(file)) throw std::runtime_error(file + ": cannot be written");
+  }
+
+  void write_odometry(const ImportedOdometry& reading) {
+    pose_ = pose_ + to_pose(increment_of_arc(reading.arc));
+    mrpt::obs::CObservationOdometry o;
+    o.timestamp = mrpt::Clock::fromDouble(reading.time);
+    o.sensorLabel = "odometry";
+    o.odometry = pose_;
+    fill_measured(reading, o);
+    if (reading.ticks) {
+      o.encoderLeftTicks = (*reading.ticks)[0];
+      o.encoderRightTicks = (*reading.ticks)[1];
+    }
+    archive() << o;
+  }
+
+  void write_scan(const ImportedScan& scan) { archive() << to_observation(scan); }
+
+  void write_frame(const ImportedScan& scan) {
+    mrpt::obs::CSensoryFrame frame;
+    frame.insert(std::make_shared<CObservationBearingRange>(to_observation(scan)));
+    archive() << frame;
+  }
+
+  void write_action(const ImportedOdometry& reading) {
+    mrpt::obs::CActionRobotMovement2D motion;
+    motion.timestamp = mrpt::Clock::fromDouble(reading.time);
+    motion.rawOdometryIncrementReading = to_pose(increment_of_arc(reading.arc));
+    mrpt::math::CMatrixDouble33 cov;
+    for (int i = 0; reading.cov_increment && i < 3; ++i)
+      for (int j = 0; j < 3; ++j) cov(i, j) = (*reading.cov_increment)(i, j);
+    motion.poseChange =
+        mrpt::poses::CPosePDFGaussian::Create(motion.rawOdometryIncrementReading, cov);
+    // MRPT recomputes poseChange from its own motion model when it reads an action of method odometry.
+    motion.estimationMethod = mrpt::obs::CActionRobotMovement2D::emScan2DMatching;
+    fill_measured(reading, motion);
+    mrpt::obs::CActionCollection actions;
+    actions.insert(motion);
+    archive() << actions;
+  }
+
+ private:
+  mrpt::serialization::CArchive& archive() { return *archive_; }
+
+  void fill_measured(const ImportedOdometry& reading, auto& out) const {
+    out.hasEncodersInfo = reading.ticks.has_value();
+    out.hasVelocities = reading.has_velocity && reading.dt > 0.0;
+    if (!out.hasVelocities) return;
+    const Eigen::Vector3d velocity = reading.arc / reading.dt;
+    out.velocityLocal = {velocity.x(), velocity.y(), velocity.z()};
+  }
+
+  CObservationBearingRange to_observation(const ImportedScan& scan) const {
+    CObservationBearingRange o;
+    o.timestamp = mrpt::Clock::fromDouble(scan.time);
+    o.sensorLabel = "landmarks";
+    o.sensorLocationOnRobot = mrpt::poses::CPose3D(to_pose(log_.T_robot_sensor));
+    o.fieldOfView_yaw = static_cast<float>(log_.field_of_view);
+    o.fieldOfView_pitch = 0.0F;
+    o.maxSensorDistance = static_cast<float>(log_.max_range);
+    o.sensor_std_range = static_cast<float>(log_.sigma_range);
+    o.sensor_std_yaw = static_cast<float>(log_.sigma_bearing);
+    for (const auto& sighting : scan.sightings) o.sensedData.push_back(to_measurement(sighting));
+    o.validCovariances = !scan.sightings.empty();
+    for (const auto& sighting : scan.sightings) o.validCovariances &= sighting.cov.has_value();
+    return o;
+  }
+
+  const ImportedLog& log_;
+  mrpt::io::CFileGZOutputStream out_;
+  mrpt::serialization::CArchive::UniquePtr archive_ = mrpt::serialization::archiveUniquePtrFrom(out_);
+  mrpt::poses::CPose2D pose_;
+};
+
+bool write_rawlog(const ImportedLog& log, const std::string& file,
+                  const std::function<bool()>& interrupted) {
+  RawlogWriter writer(log, file);
+  auto scan = log.scans.begin();
+  bool first = true;
+  for (const auto& reading : log.odometry) {
+    if (interrupted && interrupted()) return false;
+    for (; scan != log.scans.end() && scan->time < reading.time; ++scan)
+      log.as_pairs ? writer.write_frame(*scan) : writer.write_scan(*scan);
+    if (!log.as_pairs) writer.write_odometry(reading);
+    else if (!first) writer.write_action(reading);
+    const bool seen = scan != log.scans.end() && scan->time == reading.time;
+    if (log.as_pairs) writer.write_frame(seen ? *scan++ : ImportedScan{reading.time, {}});
+    first = false;
+  }
+  for (; scan != log.scans.end(); ++scan)
+    log.as_pairs ? writer.write_frame(*scan) : writer.write_scan(*scan);
+  return true;
+}
+
+std::string path_text(const Trajectory& path) {
+  std::string text;
+  for (std::size_t i = 0; i < path.poses.size(); ++i) {
+    const Eigen::Vector3d& p = path.poses[i];
+    append_time(text, path.times[i]);
+    for (const double value :
+         {p.x(), p.y(), 0.0, 0.0, 0.0, std::sin(p.z() / 2), std::cos(p.z() / 2)}) {
+      text += ' ';
+      append_number(text, value);
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+std::string landmarks_text(const std::vector<TrueLandmark>& landmarks) {
+  std::string text = "id,x,y\n";
+  for (const auto& landmark : landmarks) {
+    append_number(text, landmark.id);
+    for (int i = 0; i < 2; ++i) {
+      text += ',';
+      append_number(text, landmark.position[i]);
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+std::string notes_text(const ImportedLog& log) {
+  nlohmann::json json;
+  json["scenario"] = log.scenario;
+  json["has_heading"] = log.truth.path.has_heading;
+  json["calibration"] = log.truth.calibration;
+  json["parameters"] = log.parameters;
+  json["remarks"] = log.remarks;
+  return json.dump(2) + "\n";
+}
+
+}  // namespace
+
+void ImportedLog::add_sighting(const TextReader& row, double time, ImportedSighting sighting) {
+  if (!(sighting.range > 0.0)) row.reject("range must be positive");
+  if (sighting.id < kNoIdentity || sighting.id > INT32_MAX) row.reject("landmark id out of range");
+  if (!scans.empty() && time < scans.back().time) row.reject("time goes backwards");
+  sighting.bearing = std::remainder(sighting.bearing, 2.0 * M_PI);
+  if (scans.empty() || time > scans.back().time) scans.push_back({time, {}});
+  scans.back().sightings.push_back(std::move(sighting));
+}
+
+void ImportedLog::add_velocity(const TextReader& row, double time, const Eigen::Vector3d& velocity) {
+  ImportedOdometry reading;
+  reading.time = time;
+  reading.dt = odometry.empty() ? 0.0 : time - odometry.back().time;
+  if (reading.dt < 0.0) row.reject("time goes backwards");
+  reading.arc = velocity * reading.dt;
+  odometry.push_back(reading);
+}
+
+void distort_wheels(ImportedLog& log, double left, double right, double track) {
+  const auto scaled = [](std::int32_t ticks, double factor) {
+    return static_cast<std::int32_t>(std::llround(factor * ticks));
+  };
+  for (auto& reading : log.odometry) {
+    const double dl = left * (reading.arc.x() - reading.arc.z() * track / 2);
+    const double dr = right * (reading.arc.x() + reading.arc.z() * track / 2);
+    reading.arc.x() = (dl + dr) / 2;
+    reading.arc.z() = (dr - dl) / track;
+    if (reading.ticks)
+      reading.ticks = {scaled((*reading.ticks)[0], left), scaled((*reading.ticks)[1], right)};
+  }
+  log.parameters["distortion_left"] = left;
+  log.parameters["distortion_right"] = right;
+  log.parameters["distortion_track_width"] = track;
+}
+
+void strip_identities(ImportedLog& log) {
+  for (auto& scan : log.scans)
+    for (auto& sighting : scan.sightings) sighting.id = kNoIdentity;
+  log.remarks["identities"] = "removed from the sightings at import";
+}
+
+bool write_imported_log(const ImportedLog& log, const std::string& rawlog,
+                        const std::function<bool()>& interrupted) {
+  const std::string stem = std::filesystem::path(rawlog).replace_extension().string();
+  const std::string path = stem + ".truth.tum", landmarks = stem + ".landmarks.csv";
+  std::error_code error;
+  std::filesystem::remove(path, error);
+  std::filesystem::remove(landmarks, error);
+  const bool complete = write_rawlog(log, rawlog, interrupted);
+  if (!log.truth.path.poses.empty()) replace_file(path, path_text(log.truth.path));
+  if (!log.truth.landmarks.empty()) replace_file(landmarks, landmarks_text(log.truth.landmarks));
+  replace_file(stem + ".truth.json", notes_text(log));
+  return complete;
+}
+
+}  // namespace libslam

@@ -1,0 +1,110 @@
+#include <mrpt/obs/CActionRobotMovement2D.h>
+#include <mrpt/obs/CObservationBearingRange.h>
+
+#include <algorithm>
+#include <cmath>
+#include <libslam/io/log_inspection.hpp>
+#include <libslam/io/mrpt_fields.hpp>
+
+namespace libslam {
+namespace {
+
+using mrpt::obs::CObservation;
+using mrpt::obs::CObservationBearingRange;
+
+/// A hostile log must not fill the memory with names and numbers.
+constexpr std::size_t kMaxIdentities = 100000, kMaxSensors = 1000;
+constexpr double kAgreement = 0.1, kAgreementFloor = 0.01;
+
+bool agrees(double a, double b) {
+  return std::abs(a - b) <= kAgreement * std::max(std::abs(a), std::abs(b)) + kAgreementFloor;
+}
+
+void count_time(SensorStatistics& sensor, mrpt::system::TTimeStamp stamp) {
+  const bool first = sensor.count == sensor.invalid_times;
+  ++sensor.count;
+  const auto time = stamp_seconds(stamp);
+  if (!time) {
+    ++sensor.invalid_times;
+    return;
+  }
+  if (first) sensor.first_time = sensor.last_time = *time;
+  if (*time < sensor.last_time) ++sensor.backward_times;
+  sensor.longest_gap = std::max(sensor.longest_gap, *time - sensor.last_time);
+  sensor.first_time = std::min(sensor.first_time, *time);
+  sensor.last_time = std::max(sensor.last_time, *time);
+}
+
+void count_sightings(LandmarkStatistics& landmarks, const CObservationBearingRange& observation) {
+  for (const auto& sighting : observation.sensedData) {
+    const double range = sighting.range;
+    const bool first = landmarks.sightings == landmarks.unusable;
+    ++landmarks.sightings;
+    if (!(range > 0.0) || !std::isfinite(range) || !std::isfinite(sighting.yaw)) {
+      ++landmarks.unusable;
+      continue;
+    }
+    landmarks.min_range = first ? range : std::min(landmarks.min_range, range);
+    landmarks.max_range = std::max(landmarks.max_range, range);
+    if (sighting.landmarkID < 0) continue;
+    ++landmarks.with_identity;
+    if (landmarks.identities.size() < kMaxIdentities)
+      landmarks.identities.insert(sighting.landmarkID);
+  }
+}
+
+}  // namespace
+
+double SensorStatistics::rate() const {
+  const double span = last_time - first_time;
+  const auto valid = count - invalid_times;
+  return valid > 1 && span > 0.0 ? static_cast<double>(valid - 1) / span : 0.0;
+}
+
+void LogInspection::observe(const RawlogEntry& entry) {
+  ++classes_[entry.class_name];
+  if (entry.kind == EntryKind::kObservation) {
+    observe(dynamic_cast<const CObservation&>(*entry.object));
+  } else if (entry.kind == EntryKind::kFrame) {
+    for (const auto& observation : dynamic_cast<const mrpt::obs::CSensoryFrame&>(*entry.object))
+      if (observation) observe(*observation);
+  }
+}
+
+void LogInspection::observe(const CObservation& observation) {
+  const std::string name = (observation.sensorLabel.empty() ? "(no label)" : observation.sensorLabel) +
+                           " (" + observation.GetRuntimeClass()->className + ")";
+  if (sensors_.size() < kMaxSensors || sensors_.contains(name))
+    count_time(sensors_[name], observation.timestamp);
+  if (const auto* landmarks = dynamic_cast<const CObservationBearingRange*>(&observation))
+    count_sightings(landmarks_, *landmarks);
+}
+
+void LogInspection::observe(const LogStep& step) {
+  if (steps_++ == 0) first_time_ = step.time;
+  last_time_ = step.time;
+  if (!step.action) return;
+  const auto motion = step.action->getActionByClass<mrpt::obs::CActionRobotMovement2D>();
+  if (!motion) return;
+  mrpt::poses::CPose2D increment;
+  motion->poseChange->getMean(increment);
+  const double distance = increment.norm(), turn = std::abs(increment.phi());
+  ++odometry_.motions;
+  odometry_.with_covariance += step.has_motion_covariance ? 1 : 0;
+  odometry_.with_ticks += motion->hasEncodersInfo ? 1 : 0;
+  odometry_.path_length += distance;
+  odometry_.total_turn += turn;
+  if (motion->hasVelocities) {
+    const auto& v = motion->velocityLocal;
+    ++odometry_.with_velocities;
+    if (agrees(std::hypot(v.vx, v.vy) * step.dt, distance) &&
+        agrees(v.omega * step.dt, increment.phi()))
+      ++odometry_.velocities_agree;
+  }
+  if (step.dt > 0.0) {
+    odometry_.max_speed = std::max(odometry_.max_speed, distance / step.dt);
+    odometry_.max_turn_rate = std::max(odometry_.max_turn_rate, turn / step.dt);
+  }
+}
+
+}  // namespace libslam

@@ -1,0 +1,45 @@
+#pragma once
+// Ground truth from files: the forms that libslam's programs write and those that MRPT ships.
+
+#include <libslam/data/ground_truth.hpp>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace libslam {
+
+/// A path, recognised by its number of columns:
+///   8  TUM: t x y z qx qy qz qw (time [s], quaternion with w last); planar pose x, y, yaw;
+///   6  MRPT: x y z yaw pitch roll without times; row i belongs to step i of the log, counting a leading
+///      frame as step 0 (checked on kf-slam_demo: pair k is row k + 1, both from 0).
+/// Throws InputError where a row cannot be read, times go backwards or a quaternion is zero.
+Trajectory read_true_path(const std::string& file);
+
+/// A map, recognised by its number of columns:
+///   3 or 4  id,x,y[,z], a header row with these names is left out;
+///   7       MRPT: x y z . . . id.
+/// Throws InputError where a row cannot be read or an id comes twice.
+std::vector<TrueLandmark> read_true_landmarks(const std::string& file);
+
+/// What X.truth.json says besides its description of the scenario.
+struct TruthNotes {
+  bool has_heading = true;                    ///< the path holds headings, not positions only
+  std::map<std::string, double> calibration;  ///< parameter name -> true value
+};
+
+/// Throws InputError where the file is no JSON object or a value has a wrong type.
+TruthNotes read_truth_notes(const std::string& file);
+
+/// Where the truth of a log is; an empty name where there is none.
+struct TruthFiles {
+  std::string path, landmarks, notes;
+};
+
+/// The files that stand beside `rawlog` (X.rawlog): X.truth.tum, X.landmarks.csv, X.truth.json, else
+/// MRPT's X_ground_truth_robot_path.txt and X_ground_truth.txt.
+TruthFiles find_truth(const std::string& rawlog);
+
+/// Reads what `files` names. Throws InputError.
+GroundTruth read_truth(const TruthFiles& files);
+
+}  // namespace libslam

@@ -1,0 +1,86 @@
+#include <libslam/pipeline/factory.hpp>
+
+#include <libslam/association/known.hpp>
+#include <libslam/association/nearest_neighbour.hpp>
+#include <libslam/frontend/range_bearing_observation.hpp>
+#include <libslam/measurement/range_bearing.hpp>
+#include <libslam/motion/ackermann.hpp>
+#include <libslam/motion/differential.hpp>
+#include <libslam/motion/odometry_increment.hpp>
+#include <libslam/state/chi_square.hpp>
+#include <stdexcept>
+#include <string>
+
+namespace libslam {
+
+namespace {
+
+/// Running numbers of landmarks start here where the log has identities of its own (32 bit).
+constexpr std::int64_t kBeyondIdentities = std::int64_t{1} << 32;
+
+[[noreturn]] void throw_unknown(const std::string& what, const std::string& value) {
+  throw std::invalid_argument("unknown " + what + " '" + value + "'");
+}
+
+std::unique_ptr<MotionModel> make_motion(const Parameters& p) {
+  const OdometrySource source =
+      p.input.odometry == "none" ? OdometrySource::kIncrements : odometry_source(p.input);
+  if (p.motion.model == "odometry_increment")
+    return std::make_unique<OdometryIncrement>(p.motion, p.calibration, source);
+  if (p.motion.model == "differential")
+    return std::make_unique<Differential>(p.motion, p.calibration, source);
+  if (p.motion.model == "ackermann")
+    return std::make_unique<Ackermann>(p.motion, p.calibration, source);
+  throw_unknown("motion model", p.motion.model);
+}
+
+std::unique_ptr<MeasurementModel> make_measurement(const Parameters& p) {
+  if (p.measurement.model == "range_bearing") return std::make_unique<RangeBearing>();
+  throw_unknown("measurement model", p.measurement.model);
+}
+
+std::unique_ptr<Associator> make_associator(const Parameters& p, const MeasurementModel& model) {
+  const int dof = tangent_dimension(model.landmark_spec());
+  const double gate = chi_square_quantile(p.association.gate_probability, dof);
+  const auto nearest = [&] {
+    return std::make_unique<NearestNeighbour>(
+        gate, chi_square_quantile(p.association.new_landmark_probability, dof));
+  };
+  if (p.association.method == "known") return std::make_unique<KnownAssociation>(gate);
+  if (p.association.method == "nearest_neighbour") return nearest();
+  if (p.association.method == "known_or_nearest")
+    return std::make_unique<KnownAssociation>(chi_square_quantile(1.0, dof), nearest());
+  throw_unknown("association method", p.association.method);
+}
+
+Eigen::Matrix3d planar_covariance(double sigma_xy, double sigma_heading_deg) {
+  const Eigen::Vector3d sigma(sigma_xy, sigma_xy, sigma_heading_deg * kPi / 180.0);
+  return sigma.cwiseAbs2().asDiagonal();
+}
+
+}  // namespace
+
+EkfSlamParts make_filter_parts(const Parameters& p) {
+  EkfSlamParts parts;
+  parts.motion = make_motion(p);
+  parts.measurement = make_measurement(p);
+  parts.associator = make_associator(p, *parts.measurement);
+  parts.frame = make_error_frame(p.filter.error_frame);
+  parts.registry =
+      LandmarkRegistry(p.association.confirm_after, p.association.prune_after,
+                       p.association.method == "known_or_nearest" ? kBeyondIdentities : 0);
+  parts.cov_start =
+      planar_covariance(p.filter.initial_sigma_xy, p.filter.initial_sigma_heading_deg);
+  parts.cov_no_odometry =
+      planar_covariance(p.motion.no_odometry_sigma_xy, p.motion.no_odometry_sigma_heading_deg);
+  return parts;
+}
+
+std::unique_ptr<Frontend> make_frontend(const Parameters& p) {
+  if (p.frontend.source == "range_bearing")
+    return std::make_unique<RangeBearingObservation>(p.frontend, p.measurement,
+                                                     p.input.sensor_label);
+  throw_unknown("front-end", p.frontend.source);
+}
+
+}  // namespace libslam

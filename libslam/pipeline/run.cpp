@@ -1,0 +1,175 @@
+#include <libslam/pipeline/run.hpp>
+
+#include <sys/resource.h>
+
+#include <chrono>
+#include <cmath>
+#include <exception>
+#include <libslam/config/digest.hpp>
+#include <libslam/config/version.hpp>
+#include <libslam/config/yaml_loader.hpp>
+#include <libslam/io/input_error.hpp>
+#include <libslam/io/rawlog_player.hpp>
+#include <libslam/pipeline/pipeline.hpp>
+#include <libslam/result/atomic_file.hpp>
+#include <libslam/result/recorder.hpp>
+#include <utility>
+
+namespace libslam {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+double cpu_seconds() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  const auto seconds = [](const timeval& t) {
+    return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+  };
+  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+}
+
+double peak_memory_mb() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024.0;
+}
+
+PlayerOptions player_options(const RunRequest& request) {
+  PlayerOptions options;
+  options.input = request.parameters.input;
+  options.pacing = request.pacing;
+  return options;
+}
+
+class Run {
+ public:
+  explicit Run(const RunRequest& request)
+      : request_(request),
+        player_(request.rawlog, player_options(request)),
+        pipeline_(request.parameters),
+        recorder_({request.directory, request.force, request.parameters.output.trajectory_period_s,
+                   request.parameters.output.report}) {
+    replace_file(request.directory / "config.yaml", to_yaml(request.parameters));
+  }
+
+  /// Processes steps until the end; an exception of the log is kept, so that results are saved first.
+  void play() {
+    try {
+      while (!stopped() && exit_code_ == 0) {
+        auto step = player_.next();
+        if (!step) break;
+        process(*step);
+      }
+      if (stopped()) end(7, "interrupted");
+    } catch (...) {
+      failure_ = std::current_exception();
+      end(4, "input rejected");
+    }
+  }
+
+  RunSummary finish() {
+    const LandmarkMap map(pipeline_.filter().landmarks());
+    const bool known = request_.parameters.association.method != "nearest_neighbour";
+    RunSummary summary = recorder_.finish(
+        summarize(), map, request_.truth,
+        known ? LandmarkIdentity::known : LandmarkIdentity::unknown);
+    if (failure_) std::rethrow_exception(failure_);
+    return summary;
+  }
+
+ private:
+  bool stopped() const { return request_.stop != nullptr && request_.stop->load(); }
+
+  void end(int exit_code, const char* status) {
+    exit_code_ = exit_code;
+    status_ = status;
+  }
+
+  void process(const LogStep& step) {
+    const Clock::time_point start = Clock::now();
+    StepRecord record;
+    try {
+      record = pipeline_.process(step);
+    } catch (const UnusableOdometry& unusable) {
+      if (request_.parameters.input.policy == "strict")
+        throw InputError(request_.rawlog + ": " + unusable.what());
+      ++unusable_steps_;
+      if (warnings_.empty()) warnings_.push_back(unusable.what());
+      record = pipeline_.process_frame(step);
+    }
+    record.step_ms = 1e3 * seconds_since(start);
+    if (!pipeline_.filter().healthy()) {
+      end(6, "diverged");
+      return;
+    }
+    recorder_.record(record);
+    if (request_.on_step) request_.on_step(player_.progress(), record);
+  }
+
+  RunSummary summarize() {
+    const InputSummary& input = player_.summary();
+    const std::int64_t unusable = unusable_steps_ + pipeline_.frontend().unusable();
+    if (exit_code_ == 0 && (input.incomplete() || unusable > 0)) end(5, "part of the input unusable");
+    RunSummary summary;
+    summary.program = request_.program;
+    summary.version = version();
+    summary.git = git_revision();
+    summary.config_sha256 = sha256_of_text(to_yaml(request_.parameters));
+    summary.input_sha256 = sha256_of_file(request_.rawlog);
+    summary.seed = request_.seed;
+    summary.threads = request_.threads;
+    summary.exit_code = exit_code_;
+    summary.status = status_;
+    summary.input = {request_.rawlog, input.entries,  input.actions,
+                     input.observations, input.duration_s, input.skipped + unusable,
+                     input.repaired,  input.warnings};
+    auto& warnings = summary.input.warnings;
+    warnings.insert(warnings.end(), warnings_.begin(), warnings_.end());
+    const auto about_odometry = pipeline_.odometry().warnings();
+    warnings.insert(warnings.end(), about_odometry.begin(), about_odometry.end());
+    if (pipeline_.frontend().unusable() > 0)
+      warnings.push_back(std::to_string(pipeline_.frontend().unusable()) +
+                         " measurements left out: not finite or range not positive");
+    fill_timing(summary);
+    return summary;
+  }
+
+  void fill_timing(RunSummary& summary) const {
+    summary.timing.wall_s = seconds_since(start_);
+    summary.timing.cpu_s = cpu_seconds() - cpu_start_;
+    const PhaseTimes& times = pipeline_.filter().times();
+    for (std::size_t i = 0; i < PhaseTimes::kNames.size(); ++i)
+      summary.timing.phases[std::string(PhaseTimes::kNames[i])] = times.seconds[i];
+    summary.timing.peak_rss_mb = peak_memory_mb();
+    if (summary.timing.wall_s > 0.0 && summary.input.duration_s > 0.0)
+      summary.timing.realtime_factor = summary.input.duration_s / summary.timing.wall_s;
+  }
+
+  const RunRequest& request_;
+  Clock::time_point start_ = Clock::now();
+  double cpu_start_ = cpu_seconds();
+  RawlogPlayer player_;
+  Pipeline pipeline_;
+  Recorder recorder_;
+  std::exception_ptr failure_;
+  std::vector<std::string> warnings_;
+  std::int64_t unusable_steps_ = 0;
+  int exit_code_ = 0;
+  std::string status_ = "done";
+};
+
+}  // namespace
+
+RunSummary run_rawlog(const RunRequest& request) {
+  Run run(request);
+  run.play();
+  return run.finish();
+}
+
+}  // namespace libslam

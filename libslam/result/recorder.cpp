@@ -1,0 +1,125 @@
+#include <array>
+#include <sstream>
+#include <stdexcept>
+
+#include <libslam/result/atomic_file.hpp>
+#include <libslam/result/recorder.hpp>
+#include <libslam/result/report.hpp>
+
+namespace libslam {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// What a run leaves behind; the only names that `force` removes.
+constexpr std::array<const char*, 11> kRunFiles = {
+    "run.json",      "config.yaml", "trajectory.tum", "trajectory.csv",
+    "map.csv",       "report.html", "map.simplemap",  "map.gridmap.gz",
+    "scene.3Dscene", "log.txt",     "checkpoint"};
+
+void prepare_directory(const fs::path& directory, bool force) {
+  std::error_code error;
+  if (fs::exists(directory, error)) {
+    if (!fs::is_directory(directory, error))
+      throw std::runtime_error(directory.string() + " exists and is not a directory");
+    if (!fs::is_empty(directory, error) && !error && !force)
+      throw std::runtime_error(directory.string() +
+                               " is not empty (--force replaces the run in it)");
+    if (!error)
+      for (const char* name : kRunFiles) fs::remove_all(directory / name, error);
+  } else if (!error) {
+    fs::create_directories(directory, error);
+  }
+  if (error)
+    throw std::runtime_error("cannot write " + directory.string() + ": " + error.message());
+}
+
+std::ofstream open_for_writing(const fs::path& file) {
+  std::ofstream out(file, std::ios::binary | std::ios::trunc);
+  if (!out) throw std::runtime_error("cannot write " + file.string());
+  return out;
+}
+
+void append(std::ofstream& out, const std::string& text, const fs::path& file) {
+  out.write(text.data(), static_cast<std::streamsize>(text.size()));
+  out.flush();
+  if (!out) throw std::runtime_error("cannot write " + file.string());
+}
+
+std::map<std::string, double> means_of(const std::vector<CalibrationValue>& calibration) {
+  std::map<std::string, double> means;
+  for (const CalibrationValue& value : calibration) means[value.name] = value.mean;
+  return means;
+}
+
+}  // namespace
+
+Recorder::Recorder(RecorderOptions options) : options_(std::move(options)) {
+  prepare_directory(options_.directory, options_.force);
+  csv_ = open_for_writing(options_.directory / "trajectory.csv");
+  tum_ = open_for_writing(options_.directory / "trajectory.tum");
+}
+
+void Recorder::record(const StepRecord& step) {
+  statistics_.add(step);
+  last_ = step;
+  last_is_written_ = !has_header_ || step.nis_dof > 0 ||
+                     step.time - last_row_time_ >= options_.trajectory_period_s;
+  if (last_is_written_) write_row(step);
+}
+
+void Recorder::write_row(const StepRecord& step) {
+  text_.clear();
+  if (!has_header_) {
+    append_trajectory_header(text_, step.calibration);
+    calibration_count_ = step.calibration.size();
+  } else if (step.calibration.size() != calibration_count_) {
+    throw std::invalid_argument(
+        "step " + std::to_string(step.index) + " has " + std::to_string(step.calibration.size()) +
+        " calibration parameters, the first had " + std::to_string(calibration_count_));
+  }
+  append_trajectory_row(text_, step);
+  append(csv_, text_, options_.directory / "trajectory.csv");
+  text_.clear();
+  append_tum_row(text_, step.time, step.pose);
+  append(tum_, text_, options_.directory / "trajectory.tum");
+  has_header_ = true;
+  last_row_time_ = step.time;
+}
+
+void Recorder::fill_result(RunSummary& summary, const LandmarkMap& map) const {
+  statistics_.fill(summary);
+  if (last_ && !summary.result.pose) summary.result.pose = last_->pose;
+  summary.result.landmarks = static_cast<std::int64_t>(map.size());
+  if (summary.result.calibration.empty()) summary.result.calibration = statistics_.calibration();
+}
+
+RunSummary Recorder::finish(RunSummary summary, const LandmarkMap& map, const GroundTruth& truth,
+                            LandmarkIdentity identity) {
+  if (!last_is_written_) write_row(*last_);
+  last_is_written_ = true;
+  if (!has_header_) {
+    text_.clear();
+    append_trajectory_header(text_, {});
+    append(csv_, text_, options_.directory / "trajectory.csv");
+    has_header_ = true;
+  }
+  std::ostringstream map_text;
+  write_landmark_map(map_text, map);
+  replace_file(options_.directory / "map.csv", map_text.str());
+
+  fill_result(summary, map);
+  const std::vector<EstimatedPose> path =
+      read_estimated_path(options_.directory / "trajectory.csv");
+  if (!truth.empty())
+    summary.truth =
+        compare_with_truth(path, map, means_of(summary.result.calibration), truth, identity);
+  replace_file(options_.directory / "run.json", to_json_text(summary));
+  if (options_.report)
+    replace_file(options_.directory / "report.html",
+                 make_report({summary, map, path, options_.directory / "trajectory.csv", truth,
+                              statistics_.step_times()}));
+  return summary;
+}
+
+}  // namespace libslam

@@ -1,0 +1,67 @@
+#pragma once
+// Writes the run directory.
+
+#include <filesystem>
+#include <fstream>
+#include <optional>
+#include <string>
+
+#include <libslam/data/ground_truth.hpp>
+#include <libslam/data/step_record.hpp>
+#include <libslam/map/landmark_map.hpp>
+#include <libslam/result/run_summary.hpp>
+#include <libslam/result/step_statistics.hpp>
+
+namespace libslam {
+
+struct RecorderOptions {
+  std::filesystem::path directory;
+  bool force = false;  ///< take an existing directory and replace the files of a run in it
+  double trajectory_period_s = 0.0;  ///< shortest time between rows without an update [s]
+  bool report = true;                ///< write report.html
+};
+
+/// Streams the steps of a run to disk and closes it with map, summary and report.
+///
+/// What is safe when: each row of trajectory.csv and trajectory.tum is handed to the operating
+/// system before record() returns, so a killed or crashed process loses none; a power failure may
+/// lose the last seconds. All other files appear complete or not at all. Memory does not grow with
+/// the log while recording; finish() holds the path once (128 bytes per row) to compare it with
+/// truth and to draw it.
+class Recorder {
+ public:
+  /// Creates the directory. Throws std::runtime_error naming the path where it exists and is not an
+  /// empty directory (without `force`), or cannot be written.
+  explicit Recorder(RecorderOptions options);
+
+  /// Appends a step. Throws std::runtime_error naming the file where writing fails,
+  /// std::invalid_argument where the calibration parameters are not those of the first step.
+  void record(const StepRecord& step);
+
+  /// Writes map.csv, run.json and report.html, in this order. `summary` holds what the caller
+  /// knows; final pose, landmark count, calibration, step times, health of the innovations and the
+  /// comparison with `truth` are filled in here where it leaves them empty. `identity` says whether
+  /// the ids of `map` are those of the log. Returns the completed summary. Throws
+  /// std::runtime_error naming the file that cannot be written.
+  RunSummary finish(RunSummary summary, const LandmarkMap& map, const GroundTruth& truth,
+                    LandmarkIdentity identity);
+
+  const std::filesystem::path& directory() const { return options_.directory; }
+  const StepStatistics& statistics() const { return statistics_; }
+
+ private:
+  void write_row(const StepRecord& step);
+  void fill_result(RunSummary& summary, const LandmarkMap& map) const;
+
+  RecorderOptions options_;
+  std::ofstream csv_, tum_;
+  std::string text_;
+  bool has_header_ = false;
+  std::size_t calibration_count_ = 0;
+  double last_row_time_ = 0.0;
+  bool last_is_written_ = true;
+  std::optional<StepRecord> last_;
+  StepStatistics statistics_;
+};
+
+}  // namespace libslam

@@ -1,0 +1,36 @@
+#pragma once
+// report.html: one self-contained page that shows a run.
+
+#include <filesystem>
+#include <span>
+#include <string>
+
+#include <libslam/data/ground_truth.hpp>
+#include <libslam/map/landmark_map.hpp>
+#include <libslam/result/run_summary.hpp>
+#include <libslam/result/series_envelope.hpp>
+#include <libslam/result/trajectory.hpp>
+
+namespace libslam {
+
+/// What the page shows. The references must outlive the call of make_report.
+struct ReportInput {
+  const RunSummary& summary;
+  const LandmarkMap& map;
+  std::span<const EstimatedPose> path;
+  std::filesystem::path trajectory_csv;  ///< read once more for innovations and calibration
+  const GroundTruth& truth;              ///< may be empty
+  const SeriesEnvelope& step_times;      ///< [ms] over log time
+};
+
+/// Folder that holds d3/d3.min.js or d3.min.js: $LIBSLAM_JS_DIR, else the one found at
+/// configuration.
+std::filesystem::path plotting_library_folder();
+
+/// The page as HTML. The plotting library is read from `library_folder` and inlined; where it is
+/// missing, the page carries still drawings and says what to install. Nothing on the page loads
+/// from a network. Throws like TrajectoryReader.
+std::string make_report(const ReportInput& input,
+                        const std::filesystem::path& library_folder = plotting_library_folder());
+
+}  // namespace libslam

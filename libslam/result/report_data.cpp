@@ -1,0 +1,302 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <limits>
+#include <optional>
+
+#include <Eigen/Dense>
+#include <mrpt/math/wrap2pi.h>
+
+#include <libslam/result/alignment.hpp>
+#include <libslam/result/report_data.hpp>
+#include <libslam/state/chi_square.hpp>
+
+namespace libslam {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using mrpt::math::TPose2D;
+
+constexpr std::size_t kBuckets = 1400;
+constexpr std::size_t kPathPoints = 5000;
+constexpr std::size_t kPoseEllipses = 60;
+constexpr std::size_t kLandmarks = 6000;
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+/// Six significant digits keep the page small and are finer than a pixel; null where not finite.
+Json short_number(double value) {
+  if (!std::isfinite(value)) return nullptr;
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", value);
+  return std::strtod(text, nullptr);
+}
+
+std::size_t stride_for(std::size_t count, std::size_t limit) {
+  return std::max<std::size_t>(1, (count + limit - 1) / limit);
+}
+
+/// Every stride-th index and the last one.
+template <typename Visit>
+void for_each_strided(std::size_t count, std::size_t limit, Visit visit) {
+  const std::size_t stride = stride_for(count, limit);
+  for (std::size_t i = 0; i < count; i += stride) visit(i);
+  if (count > 0 && (count - 1) % stride != 0) visit(count - 1);
+}
+
+Json polyline(std::size_t count, auto&& point_at) {
+  Json xs = Json::array(), ys = Json::array();
+  for_each_strided(count, kPathPoints, [&](std::size_t i) {
+    const Eigen::Vector2d p = point_at(i);
+    xs.push_back(short_number(p.x()));
+    ys.push_back(short_number(p.y()));
+  });
+  return {{"x", xs}, {"y", ys}};
+}
+
+/// [x, y, xx, xy, yy] after the placement.
+Json ellipse(const TPose2D& T, const Eigen::Vector2d& mean, const Eigen::Matrix2d& cov) {
+  const Eigen::Matrix2d R = Eigen::Rotation2Dd(T.phi).toRotationMatrix();
+  const Eigen::Matrix2d P = R * cov * R.transpose();
+  const Eigen::Vector2d p = transform_point(T, mean);
+  return {short_number(p.x()), short_number(p.y()), short_number(P(0, 0)), short_number(P(0, 1)),
+          short_number(P(1, 1))};
+}
+
+Json landmark_list(const LandmarkMap& map, const TPose2D& T) {
+  Json list = Json::array();
+  for_each_strided(map.size(), kLandmarks, [&](std::size_t i) {
+    const LandmarkEstimate& landmark = map.landmarks()[i];
+    if (landmark.type != "point" || landmark.mean.size() < 2) return;
+    Json entry = ellipse(T, landmark.mean.head<2>(), landmark.cov.topLeftCorner<2, 2>());
+    entry.push_back(landmark.id);
+    entry.push_back(landmark.times_seen);
+    list.push_back(entry);
+  });
+  return list;
+}
+
+/// Without a placement the frame of the truth is unknown and the truth stays out.
+Json map_data(const ReportInput& in, const std::optional<TPose2D>& placement) {
+  const TPose2D T = placement.value_or(TPose2D(0, 0, 0));
+  const GroundTruth truth = placement ? in.truth : GroundTruth();
+  Json data = {{"ellipse_scale", std::sqrt(chi_square_quantile(0.95, 2))}};
+  data["path"] = polyline(in.path.size(), [&](std::size_t i) -> Eigen::Vector2d {
+    return transform_point(T, in.path[i].pose.head<2>());
+  });
+  data["truth"] = polyline(truth.path.poses.size(), [&](std::size_t i) -> Eigen::Vector2d {
+    return truth.path.poses[i].head<2>();
+  });
+  data["truth_is_sparse"] = !truth.path.has_heading;
+  data["pose_ellipses"] = Json::array();
+  for_each_strided(in.path.size(), kPoseEllipses, [&](std::size_t i) {
+    data["pose_ellipses"].push_back(
+        ellipse(T, in.path[i].pose.head<2>(), in.path[i].cov.topLeftCorner<2, 2>()));
+  });
+  data["landmarks"] = landmark_list(in.map, T);
+  data["true_landmarks"] = Json::array();
+  for_each_strided(truth.landmarks.size(), kLandmarks, [&](std::size_t i) {
+    const TrueLandmark& landmark = truth.landmarks[i];
+    if (landmark.position.size() >= 2)
+      data["true_landmarks"].push_back(
+          {short_number(landmark.position.x()), short_number(landmark.position.y()), landmark.id});
+  });
+  return data;
+}
+
+Json abscissas(const SeriesEnvelope& series) {
+  Json t = Json::array();
+  for (std::size_t i = 0; i < series.size(); ++i) t.push_back(short_number(series.abscissa(i)));
+  return t;
+}
+
+/// Mean that forgets: over about a fortieth of a series of `length` values. NaN passes through
+/// without effect.
+class MovingMean {
+ public:
+  explicit MovingMean(std::size_t length)
+      : rate_(std::min(1.0, 40.0 / static_cast<double>(std::max<std::size_t>(1, length)))) {}
+  double add(double value) {
+    if (!std::isfinite(value)) return kNone;
+    weight_ += rate_ * (1.0 - weight_);  // corrects for the start from nothing
+    sum_ += rate_ * (value - sum_);
+    return sum_ / weight_;
+  }
+
+ private:
+  double rate_, weight_ = 0.0, sum_ = 0.0;
+};
+
+enum class Edge { low, high };
+
+Json channel(const SeriesEnvelope& series, std::size_t index, Edge edge) {
+  Json values = Json::array();
+  for (std::size_t i = 0; i < series.size(); ++i) {
+    const auto range = series.range(i, index);
+    values.push_back(short_number(static_cast<double>(edge == Edge::low ? range.low : range.high)));
+  }
+  return values;
+}
+
+Json panel(const char* label, const char* unit, const SeriesEnvelope& series, std::size_t value) {
+  return {{"label", label},
+          {"unit", unit},
+          {"low", channel(series, value, Edge::low)},
+          {"high", channel(series, value, Edge::high)}};
+}
+
+Json band(const char* name, const SeriesEnvelope& series, std::size_t low, std::size_t high) {
+  return {{"name", name},
+          {"low", channel(series, low, Edge::low)},
+          {"high", channel(series, high, Edge::high)}};
+}
+
+/// Errors in the filter's frame with their sigmas, and NEES, over the matched poses.
+void add_error_plots(Json& plots, const ReportInput& in, std::span<const PoseMatch> matches,
+                     const TPose2D& T_truth_filter) {
+  const bool heading = in.truth.path.has_heading;
+  const double start = in.path.front().time;
+  const TPose2D T_filter_truth = invert(T_truth_filter);
+  const std::vector<double> nees =
+      heading ? pose_nees(in.path, in.truth.path, matches) : std::vector<double>();
+  SeriesEnvelope errors(9, kBuckets), consistency(2, kBuckets);
+  MovingMean mean_nees(matches.size());
+  for (std::size_t i = 0; i < matches.size(); ++i) {
+    const EstimatedPose& estimate = in.path[matches[i].estimate];
+    Eigen::Vector3d e =
+        estimate.pose - transform_pose(T_filter_truth, in.truth.path.poses[matches[i].truth]);
+    e.z() = heading ? mrpt::math::wrapToPi(e.z()) : kNone;
+    const Eigen::Vector3d bound = 3.0 * estimate.cov.diagonal().cwiseMax(0.0).cwiseSqrt();
+    const double time = estimate.time - start;
+    errors.add(time, std::array{e.x(), e.y(), e.z(), -bound.x(), bound.x(), -bound.y(), bound.y(),
+                                -bound.z(), bound.z()});
+    if (heading) consistency.add(time, std::array{nees[i], mean_nees.add(nees[i])});
+  }
+  Json panels = Json::array();
+  panels.push_back(panel("x error", "m", errors, 0));
+  panels.push_back(panel("y error", "m", errors, 1));
+  if (heading) panels.push_back(panel("heading error", "rad", errors, 2));
+  for (std::size_t i = 0; i < panels.size(); ++i)
+    panels[i]["band"] = band("\u00b13\u03c3", errors, 3 + 2 * i, 4 + 2 * i);
+  plots.push_back(
+      {{"title", "Pose error"},
+       {"value", "error"},
+       {"good",
+        "A consistent filter keeps the error inside the \u00b13\u03c3 band nearly always, "
+        "and uses the band: errors far smaller than it mean a timid covariance."},
+       {"t", abscissas(errors)},
+       {"panels", panels}});
+  if (!heading) return;
+  Json nees_panel = panel("NEES", "1", consistency, 0);
+  nees_panel["interval"] = {{"name", "95 % of a consistent filter"},
+                            {"low", short_number(chi_square_quantile(0.025, 3))},
+                            {"high", short_number(chi_square_quantile(0.975, 3))}};
+  nees_panel["level"] = {{"name", "ideal mean 3"}, {"value", 3.0}};
+  nees_panel["mean"] = channel(consistency, 1, Edge::high);
+  nees_panel["log"] = true;
+  plots.push_back(
+      {{"title", "Consistency of the pose (NEES)"},
+       {"value", "NEES"},
+       {"good",
+        "The squared error in units of its covariance should move around 3 and stay inside the "
+        "band for 95 % of the steps; above it the filter is overconfident."},
+       {"t", abscissas(consistency)},
+       {"panels", Json::array({nees_panel})}});
+}
+
+/// Innovations and calibration come from the file, not from memory: only their envelope is kept.
+void add_filter_plots(Json& plots, const ReportInput& in) {
+  TrajectoryReader reader(in.trajectory_csv);
+  const std::vector<std::string>& names = reader.calibration_names();
+  SeriesEnvelope innovations(4, kBuckets);
+  MovingMean mean_nis(in.path.size());
+  SeriesEnvelope calibration(std::max<std::size_t>(1, 3 * names.size()), kBuckets);
+  std::vector<double> row(calibration.channels());
+  std::vector<std::pair<double, double>> bounds;  // by degrees of freedom
+  for (StepRecord step; reader.next(step);) {
+    const double time = step.time - in.path.front().time;
+    if (step.nis_dof > 0) {
+      const auto dof = static_cast<std::size_t>(step.nis_dof);
+      if (dof >= bounds.size()) bounds.resize(dof + 1, {0.0, 0.0});
+      if (bounds[dof].second == 0.0)
+        bounds[dof] = {chi_square_quantile(0.025, step.nis_dof) / step.nis_dof,
+                       chi_square_quantile(0.975, step.nis_dof) / step.nis_dof};
+      const double nis = step.nis / step.nis_dof;
+      innovations.add(time,
+                      std::array{nis, bounds[dof].first, bounds[dof].second, mean_nis.add(nis)});
+    }
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      const CalibrationValue& value = step.calibration[i];
+      row[3 * i] = value.mean;
+      row[3 * i + 1] = value.mean - 3.0 * value.sigma;
+      row[3 * i + 2] = value.mean + 3.0 * value.sigma;
+    }
+    if (!names.empty()) calibration.add(time, row);
+  }
+  if (innovations.size() > 0) {
+    Json nis = panel("NIS / dof", "1", innovations, 0);
+    nis["band"] = band("95 % of a consistent filter", innovations, 1, 2);
+    nis["level"] = {{"name", "ideal mean 1"}, {"value", 1.0}};
+    nis["mean"] = channel(innovations, 3, Edge::high);
+    nis["log"] = true;
+    plots.push_back(
+        {{"title", "Innovations (NIS)"},
+         {"value", "NIS per degree of freedom"},
+         {"good",
+          "Divided by its degrees of freedom the squared innovation should average 1 and leave "
+          "the band in 5 % of the updates; steadily above it the noise is set too small."},
+         {"t", abscissas(innovations)},
+         {"panels", Json::array({nis})}});
+  }
+  if (names.empty()) return;
+  Json panels = Json::array();
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    panels.push_back(panel(names[i].c_str(), "", calibration, 3 * i));
+    panels[i]["band"] = band("\u00b13\u03c3", calibration, 3 * i + 1, 3 * i + 2);
+    if (const auto known = in.truth.calibration.find(names[i]); known != in.truth.calibration.end())
+      panels[i]["level"] = {{"name", "true value"}, {"value", known->second}};
+  }
+  plots.push_back(
+      {{"title", "Calibration"},
+       {"value", "estimate"},
+       {"good",
+        "Each parameter should settle while its band shrinks and keeps the true value inside; a "
+        "band that never shrinks means that the motion did not excite the parameter."},
+       {"t", abscissas(calibration)},
+       {"panels", panels}});
+}
+
+void add_step_times(Json& plots, const ReportInput& in) {
+  if (in.step_times.size() == 0) return;
+  Json t = Json::array();
+  for (std::size_t i = 0; i < in.step_times.size(); ++i)
+    t.push_back(short_number(in.step_times.abscissa(i) - in.path.front().time));
+  Json times = panel("step time", "ms", in.step_times, 0);
+  times["log"] = true;
+  plots.push_back(
+      {{"title", "Step times"},
+       {"value", "time per step"},
+       {"good",
+        "Flat is good; growth shows the cost of a growing map, single peaks are the machine."},
+       {"t", t},
+       {"panels", Json::array({times})}});
+}
+
+}  // namespace
+
+Json make_report_data(const ReportInput& in) {
+  std::optional<TPose2D> placement;
+  if (in.summary.truth) placement = in.summary.truth->placement;
+  Json data;
+  data["map"] = map_data(in, placement);
+  data["plots"] = Json::array();
+  if (in.path.empty()) return data;
+  if (placement)
+    add_error_plots(data["plots"], in, match_poses(in.path, in.truth.path), *placement);
+  add_filter_plots(data["plots"], in);
+  add_step_times(data["plots"], in);
+  return data;
+}
+
+}  // namespace libslam

@@ -1,0 +1,119 @@
+// The files for MRPT's tools are read back with MRPT.
+
+#include <gtest/gtest.h>
+#include <mrpt/maps/CSimpleMap.h>
+#include <mrpt/obs/CObservationBearingRange.h>
+#include <mrpt/opengl/CEllipsoid2D.h>
+#include <mrpt/opengl/CEllipsoid3D.h>
+#include <mrpt/opengl/COpenGLScene.h>
+#include <mrpt/opengl/CSetOfLines.h>
+
+#include <libslam/io/exporters/scene_3d.hpp>
+#include <libslam/io/exporters/simple_map.hpp>
+
+#include "sample_run.hpp"
+
+namespace libslam {
+namespace {
+
+std::vector<Eigen::Vector3d> poses_of(const sample::Run& run) {
+  std::vector<Eigen::Vector3d> poses;
+  for (const StepRecord& step : run.steps) poses.push_back(step.pose);
+  return poses;
+}
+
+mrpt::obs::CSensoryFrame::Ptr frame_with(std::int32_t landmark) {
+  auto observation = mrpt::obs::CObservationBearingRange::Create();
+  observation->sensedData.resize(1);
+  observation->sensedData[0].landmarkID = landmark;
+  auto frame = mrpt::obs::CSensoryFrame::Create();
+  frame->insert(observation);
+  return frame;
+}
+
+TEST(Scene3d, HoldsPathRobotAndAnEllipsoidPerLandmark) {
+  const sample::TemporaryFolder folder("scene");
+  sample::Run run = sample::make_run(100, 20);
+  run.map.add({500, "point", Eigen::Vector3d(1, 2, 3), Eigen::Vector3d(1, 4, 9).asDiagonal(), 1});
+  run.map.add({501, "line", Eigen::Vector2d(1, 2), Eigen::Matrix2d::Identity(), 1});
+  const auto file = folder.path() / "scene.3Dscene";
+  write_scene_3d(file, poses_of(run), run.map);
+
+  mrpt::opengl::COpenGLScene scene;
+  ASSERT_TRUE(scene.loadFromFile(file.string()));
+  ASSERT_TRUE(scene.getByClass<mrpt::opengl::CSetOfLines>());
+  EXPECT_EQ(scene.getByClass<mrpt::opengl::CSetOfLines>()->size(), 99u);
+  EXPECT_TRUE(scene.getByName("robot"));
+  int flat = 0;
+  while (scene.getByClass<mrpt::opengl::CEllipsoid2D>(static_cast<std::size_t>(flat))) ++flat;
+  EXPECT_EQ(flat, 24);
+  const auto solid = scene.getByClass<mrpt::opengl::CEllipsoid3D>();
+  ASSERT_TRUE(solid);
+  EXPECT_EQ(solid->getName(), "500");
+  EXPECT_NEAR(solid->getPoseZ(), 3.0, 1e-6);
+  EXPECT_NEAR(static_cast<double>(solid->getCovMatrix()(2, 2)), 9.0, 1e-6);
+  EXPECT_FALSE(scene.getByName("501"));
+}
+
+TEST(Scene3d, EmptyRunAndUnwritableFile) {
+  const sample::TemporaryFolder folder("scene");
+  EXPECT_NO_THROW(write_scene_3d(folder.path() / "scene.3Dscene", {}, {}));
+  try {
+    write_scene_3d("/nonexistent/scene.3Dscene", {}, {});
+    FAIL();
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find("/nonexistent/scene.3Dscene"), std::string::npos);
+  }
+}
+
+TEST(SimpleMapWriter, PairsReadBackWithPoseCovarianceAndFrame) {
+  const sample::TemporaryFolder folder("simplemap");
+  SimpleMapWriter writer;
+  const Eigen::Matrix3d cov = Eigen::Vector3d(0.01, 0.04, 0.0009).asDiagonal();
+  writer.add({0, 0, 0}, cov, frame_with(1));
+  writer.add({0.2, 0, 0.1}, cov, frame_with(2));  // too near
+  writer.add({1, 2, -3}, 2 * cov, nullptr);       // nothing seen
+  writer.add({0.2, 0, 0.5}, 2 * cov, frame_with(3));
+  ASSERT_EQ(writer.size(), 2u);
+  const auto file = folder.path() / "map.simplemap";
+  writer.write(file);
+
+  mrpt::maps::CSimpleMap map;
+  ASSERT_TRUE(map.loadFromFile(file.string()));
+  ASSERT_EQ(map.size(), 2u);
+  const auto [pose, frame] = map.get(1);
+  const auto [covariance, mean] = pose->getCovarianceAndMean();
+  EXPECT_NEAR(mean.yaw(), 0.5, 1e-12);
+  EXPECT_NEAR(covariance(1, 1), 0.08, 1e-12);
+  EXPECT_NEAR(covariance(3, 3), 0.0018, 1e-12);
+  EXPECT_EQ(
+      frame->getObservationByClass<mrpt::obs::CObservationBearingRange>()->sensedData[0].landmarkID,
+      3);
+}
+
+TEST(SimpleMapWriter, MemoryIsBoundedAndTheWholePathStaysCovered) {
+  SimpleMapWriter writer({1.0, 0.35}, 10);
+  for (int i = 0; i < 1000; ++i) {
+    writer.add({static_cast<double>(i), 0, 0}, Eigen::Matrix3d::Identity(), frame_with(i));
+    ASSERT_LE(writer.size(), 10u);
+  }
+  const sample::TemporaryFolder folder("simplemap");
+  writer.write(folder.path() / "map.simplemap");
+  mrpt::maps::CSimpleMap map;
+  ASSERT_TRUE(map.loadFromFile((folder.path() / "map.simplemap").string()));
+  EXPECT_GE(map.size(), 5u);
+  mrpt::poses::CPose3D first, last;
+  std::get<0>(map.get(0))->getMean(first);
+  std::get<0>(map.get(map.size() - 1))->getMean(last);
+  EXPECT_EQ(first.x(), 0.0);
+  EXPECT_GT(last.x(), 800.0);
+}
+
+TEST(SimpleMapWriter, RefusesNonsense) {
+  EXPECT_THROW(SimpleMapWriter({1.0, 0.35}, 1), std::invalid_argument);
+  EXPECT_THROW(SimpleMapWriter({-1.0, 0.35}), std::invalid_argument);
+  EXPECT_THROW(SimpleMapWriter().write("/nonexistent/map.simplemap"), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace libslam

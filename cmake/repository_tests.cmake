@@ -17,6 +17,7 @@ if(NOT LIBSLAM_SANITIZE AND NOT LIBSLAM_COVERAGE)
       -D generator=${CMAKE_GENERATOR}
       -D compiler=${CMAKE_CXX_COMPILER}
       -D configuration=$<CONFIG>
+      -D rawlog=/usr/share/mrpt/datasets/kf-slam_demo.rawlog
       -P ${PROJECT_SOURCE_DIR}/tests/consumer/install_and_use.cmake)
   set_tests_properties(install.consumer PROPERTIES TIMEOUT 300)
 endif()

@@ -1,11 +1,16 @@
 // slam-import: a data set in its own format in, a standard MRPT rawlog and its ground truth out.
 
-#include <CLI/CLI.hpp>
 #include <atomic>
 #include <cmath>
 #include <csignal>
 #include <filesystem>
 #include <iostream>
+#include <map>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
 #include <libslam/config/version.hpp>
 #include <libslam/io/importers/csv_log.hpp>
 #include <libslam/io/importers/imported_log.hpp>
@@ -14,9 +19,6 @@
 #include <libslam/io/importers/victoria_park.hpp>
 #include <libslam/io/input_error.hpp>
 #include <libslam/io/input_file.hpp>
-#include <map>
-#include <string>
-#include <vector>
 
 namespace {
 
@@ -58,7 +60,8 @@ Distortions parse_distortions(const std::vector<std::string>& texts,
     double value = 0.0;
     if (equals == std::string::npos || !CLI::detail::lexical_cast(text.substr(equals + 1), value) ||
         !std::isfinite(value) || (name != "bias_deg" && value <= 0.0))
-      throw std::invalid_argument("--distort: '" + text + "' is no name=number with a positive factor");
+      throw std::invalid_argument("--distort: '" + text +
+                                  "' is no name=number with a positive factor");
     values[name] = value;
   }
   return values;
@@ -98,7 +101,8 @@ ImportedLog load_csv(Arguments arguments) {
   CsvLogOptions& csv = arguments.csv;
   if (!arguments.directory.empty()) {
     if (csv.odometry.empty()) csv.odometry = find_input_file(arguments.directory, "odometry.csv");
-    if (csv.landmarks.empty()) csv.landmarks = find_input_file(arguments.directory, "landmarks.csv");
+    if (csv.landmarks.empty())
+      csv.landmarks = find_input_file(arguments.directory, "landmarks.csv");
     if (csv.truth.empty()) csv.truth = find_optional_input_file(arguments.directory, "truth.csv");
   }
   if (csv.odometry.empty() || csv.landmarks.empty())
@@ -122,7 +126,8 @@ void report(const Arguments& arguments, const ImportedLog& log) {
             << " landmark sightings, " << log.truth.path.poses.size() << " true poses, "
             << log.truth.landmarks.size() << " true landmarks\n";
   if (!arguments.verbose) return;
-  for (const auto& [name, value] : log.parameters) std::cout << "  " << name << " = " << value << '\n';
+  for (const auto& [name, value] : log.parameters)
+    std::cout << "  " << name << " = " << value << '\n';
   for (const auto& [name, text] : log.remarks) std::cout << "  " << name << ": " << text << '\n';
 }
 
@@ -156,11 +161,13 @@ CLI::App* add_data_set(CLI::App& app, Arguments& arguments, const std::string& n
         return std::filesystem::path(file).extension() == ".rawlog" ? "" : "must end in .rawlog";
       });
   sub->add_flag("--strip-ids", arguments.strip_ids, "Remove the identities of the landmarks");
-  sub->add_option("--distort", arguments.distortions,
-                  "Falsify the odometry: left=F,right=F (wheel travel through the virtual track), or for "
-                  "victoria-park speed=F,steering=F,bias_deg=D")
+  sub->add_option(
+         "--distort", arguments.distortions,
+         "Falsify the odometry: left=F,right=F (wheel travel through the virtual track), or for "
+         "victoria-park speed=F,steering=F,bias_deg=D")
       ->delimiter(',');
-  sub->add_option("--track", arguments.track, "Virtual track of --distort [m]; with ticks the real one")
+  sub->add_option("--track", arguments.track,
+                  "Virtual track of --distort [m]; with ticks the real one")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   sub->add_flag("--quiet", arguments.quiet, "Print errors only");
@@ -178,8 +185,10 @@ void add_commands(CLI::App& app, Arguments& arguments) {
   park->add_option("--association", arguments.association,
                    "none: tree detections; known: identified trees; isam: relative odometry and "
                    "landmarks with covariances, as pairs")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, Association>{
-          {"none", Association::kNone}, {"known", Association::kKnown}, {"isam", Association::kIsam}}));
+      ->transform(CLI::CheckedTransformer(
+          std::map<std::string, Association>{{"none", Association::kNone},
+                                             {"known", Association::kKnown},
+                                             {"isam", Association::kIsam}}));
   park->add_option("--steering", arguments.steering, "Published steering calibration: aa3 or drs")
       ->transform(CLI::CheckedTransformer(
           std::map<std::string, Steering>{{"aa3", Steering::kAa3}, {"drs", Steering::kDrs}}));
@@ -198,7 +207,8 @@ void add_commands(CLI::App& app, Arguments& arguments) {
   csv->add_option("--truth", arguments.csv.truth, "File instead of truth.csv");
   csv->add_option("--sensor-pose", arguments.sensor_pose, "Sensor on the robot: x y phi [m m deg]")
       ->expected(3);
-  csv->add_option("--metres-per-tick", arguments.metres_per_tick, "Of both wheels, or left and right")
+  csv->add_option("--metres-per-tick", arguments.metres_per_tick,
+                  "Of both wheels, or left and right")
       ->expected(1, 2)
       ->check(CLI::PositiveNumber);
 }

@@ -1,18 +1,19 @@
 // slam-play: what is in a rawlog; played as fast as possible, in time, or step by step.
 
-#include <mrpt/obs/CActionRobotMovement2D.h>
-
-#include <CLI/CLI.hpp>
 #include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <iostream>
+#include <string>
+
+#include <CLI/CLI.hpp>
+#include <mrpt/obs/CActionRobotMovement2D.h>
+#include <nlohmann/json.hpp>
+
 #include <libslam/config/version.hpp>
 #include <libslam/io/input_error.hpp>
 #include <libslam/io/log_inspection.hpp>
 #include <libslam/io/rawlog_player.hpp>
-#include <nlohmann/json.hpp>
-#include <string>
 
 namespace {
 
@@ -60,21 +61,26 @@ void print_text(const LogInspection& log, const RawlogPlayer& player) {
   for (const auto& [name, count] : log.classes())
     std::printf("class        %-40s %9lld\n", name.c_str(), static_cast<long long>(count));
   for (const auto& [name, s] : log.sensors())
-    std::printf("sensor       %-40s %9lld  %8.3f Hz, longest gap %.3f s, times invalid %lld, backwards %lld\n",
-                name.c_str(), static_cast<long long>(s.count), s.rate(), s.longest_gap,
-                static_cast<long long>(s.invalid_times), static_cast<long long>(s.backward_times));
+    std::printf(
+        "sensor       %-40s %9lld  %8.3f Hz, longest gap %.3f s, times invalid %lld, backwards "
+        "%lld\n",
+        name.c_str(), static_cast<long long>(s.count), s.rate(), s.longest_gap,
+        static_cast<long long>(s.invalid_times), static_cast<long long>(s.backward_times));
   const OdometryStatistics& o = log.odometry();
-  std::printf("odometry     %lld motions, %.3f m, turned %.3f rad, fastest %.3f m/s and %.3f rad/s\n",
-              static_cast<long long>(o.motions), o.path_length, o.total_turn, o.max_speed,
-              o.max_turn_rate);
-  std::printf("             with covariance %lld, with velocities %lld (%lld agree), with ticks %lld\n",
-              static_cast<long long>(o.with_covariance), static_cast<long long>(o.with_velocities),
-              static_cast<long long>(o.velocities_agree), static_cast<long long>(o.with_ticks));
+  std::printf(
+      "odometry     %lld motions, %.3f m, turned %.3f rad, fastest %.3f m/s and %.3f rad/s\n",
+      static_cast<long long>(o.motions), o.path_length, o.total_turn, o.max_speed, o.max_turn_rate);
+  std::printf(
+      "             with covariance %lld, with velocities %lld (%lld agree), with ticks %lld\n",
+      static_cast<long long>(o.with_covariance), static_cast<long long>(o.with_velocities),
+      static_cast<long long>(o.velocities_agree), static_cast<long long>(o.with_ticks));
   const LandmarkStatistics& l = log.landmarks();
   if (l.sightings > 0)
-    std::printf("landmarks    %lld sightings, %lld identified (%zu identities), %lld unusable, range %.3f .. %.3f m\n",
-                static_cast<long long>(l.sightings), static_cast<long long>(l.with_identity),
-                l.identities.size(), static_cast<long long>(l.unusable), l.min_range, l.max_range);
+    std::printf(
+        "landmarks    %lld sightings, %lld identified (%zu identities), %lld unusable, range %.3f "
+        ".. %.3f m\n",
+        static_cast<long long>(l.sightings), static_cast<long long>(l.with_identity),
+        l.identities.size(), static_cast<long long>(l.unusable), l.min_range, l.max_range);
   std::printf("input        skipped %lld, repaired %lld%s\n", static_cast<long long>(input.skipped),
               static_cast<long long>(input.repaired), input.damaged ? ", damaged" : "");
 }
@@ -88,10 +94,14 @@ void print_json(const LogInspection& log, const RawlogPlayer& player) {
   json["leading_frame"] = input.leading_frame;
   json["steps"] = log.steps();
   json["time"] = {{"first", log.first_time()}, {"last", log.last_time()}};
-  json["input"] = {{"entries", input.entries},         {"actions", input.actions},
-                   {"observations", input.observations}, {"duration_s", input.duration_s},
-                   {"skipped", input.skipped},         {"repaired", input.repaired},
-                   {"damaged", input.damaged},         {"warnings", input.warnings},
+  json["input"] = {{"entries", input.entries},
+                   {"actions", input.actions},
+                   {"observations", input.observations},
+                   {"duration_s", input.duration_s},
+                   {"skipped", input.skipped},
+                   {"repaired", input.repaired},
+                   {"damaged", input.damaged},
+                   {"warnings", input.warnings},
                    {"warnings_omitted", input.warnings_omitted}};
   json["classes"] = log.classes();
   for (const auto& [name, s] : log.sensors())
@@ -109,12 +119,9 @@ void print_json(const LogInspection& log, const RawlogPlayer& player) {
                       {"with_velocities", o.with_velocities},
                       {"velocities_agree", o.velocities_agree},
                       {"with_ticks", o.with_ticks}};
-  json["landmarks"] = {{"sightings", l.sightings},
-                       {"identified", l.with_identity},
-                       {"identities", l.identities.size()},
-                       {"unusable", l.unusable},
-                       {"min_range_m", l.min_range},
-                       {"max_range_m", l.max_range}};
+  json["landmarks"] = {{"sightings", l.sightings},          {"identified", l.with_identity},
+                       {"identities", l.identities.size()}, {"unusable", l.unusable},
+                       {"min_range_m", l.min_range},        {"max_range_m", l.max_range}};
   // Labels come from the file: what is no UTF-8 in them must not stop the output.
   std::cout << json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << '\n';
 }
@@ -142,13 +149,16 @@ PlayerOptions player_options(const Arguments& arguments, LogInspection& log) {
 int play(const Arguments& arguments) {
   LogInspection log;
   RawlogPlayer player(arguments.file, player_options(arguments, log));
-  const bool narrate = arguments.verbose || (arguments.speed > 0.0 && !arguments.quiet && !arguments.json);
+  const bool narrate =
+      arguments.verbose || (arguments.speed > 0.0 && !arguments.quiet && !arguments.json);
   while (const auto step = player.next()) {
     log.observe(*step);
     if (narrate && !arguments.step) std::cout << describe(*step) << '\n' << std::flush;
   }
-  if (arguments.json) print_json(log, player);
-  else if (!arguments.quiet) print_text(log, player);
+  if (arguments.json)
+    print_json(log, player);
+  else if (!arguments.quiet)
+    print_text(log, player);
   const InputSummary& input = player.summary();
   if (!arguments.quiet)
     for (const auto& warning : input.warnings) std::cerr << "slam-play: " << warning << '\n';

@@ -1,6 +1,7 @@
 #include <libslam/association/nearest_neighbour.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 #include <tuple>
 
@@ -29,10 +30,31 @@ void NearestNeighbour::associate(std::span<const Feature> features,
     return std::tie(a.cost, a.feature, a.landmark) < std::tie(b.cost, b.feature, b.landmark);
   });
   taken_.assign(registry.size(), false);
+  dropped_.assign(features.size(), false);
+  settle_contests();
   for (const Pair& pair : pairs_) {
-    if (verdicts[pair.feature].outcome == Outcome::kPaired || taken_[pair.landmark]) continue;
+    if (verdicts[pair.feature].outcome == Outcome::kPaired || dropped_[pair.feature] ||
+        taken_[pair.landmark])
+      continue;
     verdicts[pair.feature] = {Outcome::kPaired, pair.landmark};
     taken_[pair.landmark] = true;
+  }
+}
+
+void NearestNeighbour::settle_contests() {
+  static const double kMargin = 2.0 * std::log(kLikelihoodRatio);
+  first_claim_.assign(taken_.size(), nullptr);
+  claimed_.assign(dropped_.size(), false);
+  for (const Pair& pair : pairs_) {
+    if (claimed_[pair.feature]) continue;  // not its best landmark
+    claimed_[pair.feature] = true;
+    const Pair*& first = first_claim_[pair.landmark];
+    if (first == nullptr) {
+      first = &pair;
+    } else if (pair.cost - first->cost < kMargin) {
+      dropped_[first->feature] = dropped_[pair.feature] = true;
+      taken_[pair.landmark] = true;
+    }
   }
 }
 

@@ -106,14 +106,19 @@ Innovation Ekf::innovate(const GaussianState& state, const LinearizedMeasurement
 }
 
 Correction Ekf::correct(GaussianState& state, BlockId pose,
-                        std::span<const LinearizedMeasurement> measurements) {
+                        std::span<const LinearizedMeasurement> measurements,
+                        std::span<const BlockId> considered) {
   if (measurements.empty()) return {};
   const Index m = stack(state, measurements);
   if (!factorize(m)) return {};
   const double nis = squared_distance(m);
   const Index n = state.dimension();
   if (delta_.size() < n) delta_.resize(2 * n);
-  state.covariance().correct(rows_, s_.topLeftCorner(m, m), nu_.head(m), delta_.head(n));
+  considered_.clear();
+  for (const BlockId block : considered)
+    for (Index i = 0; i < state.size(block); ++i) considered_.push_back(state.offset(block) + i);
+  state.covariance().correct(rows_, s_.topLeftCorner(m, m), nu_.head(m), considered_,
+                             delta_.head(n));
   frame_->retract(state, pose, delta_.head(n));
   return {true, nis, static_cast<int>(m)};
 }

@@ -47,8 +47,10 @@ class Ekf {
   Innovation innovate(const GaussianState& state, const LinearizedMeasurement& measurement);
 
   /// Joint update with all measurements stacked. `pose` is the reference pose of the error frame.
+  /// Blocks in `considered` keep estimate and covariance, but their uncertainty counts.
   Correction correct(GaussianState& state, BlockId pose,
-                     std::span<const LinearizedMeasurement> measurements);
+                     std::span<const LinearizedMeasurement> measurements,
+                     std::span<const BlockId> considered = {});
 
  private:
   /// Stacks rows_, s_ = H P H^T + R and nu_; returns the number of rows.
@@ -61,6 +63,7 @@ class Ekf {
   std::unique_ptr<ErrorFrame> frame_;
   std::vector<PlacedJacobian> placed_;
   std::vector<JacobianRows> rows_;
+  std::vector<Eigen::Index> considered_;
   Eigen::MatrixXd s_;
   Eigen::VectorXd nu_, white_, delta_;
 };

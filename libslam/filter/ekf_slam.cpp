@@ -107,7 +107,7 @@ void EkfSlam::propagate(const MotionAction* action) {
     return;
   }
   parts_.motion->linearize(state_, pose_, calibration_, *action, step_);
-  if (!calibration_.empty()) drop_unexcited(*action);
+  if (!calibration_.empty()) observe_excitation(action->dt);
   ekf_.propagate(state_, step_);
   const auto& parameters = parts_.motion->calibration();
   for (std::size_t i = 0; i < calibration_.size(); ++i) {
@@ -118,20 +118,19 @@ void EkfSlam::propagate(const MotionAction* action) {
   }
 }
 
-void EkfSlam::drop_unexcited(const MotionAction& action) {
+void EkfSlam::observe_excitation(double dt) {
   const Eigen::Rotation2Dd R_robot_world(-state_.estimate(pose_)[2]);
   Eigen::Matrix3d to_robot = Eigen::Matrix3d::Identity();
   to_robot.topLeftCorner<2, 2>() = R_robot_world.toRotationMatrix();
   calibration_jacobian_.setZero();
-  for (auto& [block, jacobian] : step_.wrt)
+  for (const auto& [block, jacobian] : step_.wrt)
     for (std::size_t i = 0; i < calibration_.size(); ++i)
       if (block == calibration_[i])
         calibration_jacobian_.col(static_cast<Eigen::Index>(i)) = to_robot * jacobian;
-  excitation_.observe(calibration_jacobian_, to_robot * step_.cov_noise * to_robot.transpose(),
-                      action.dt);
-  for (auto& [block, jacobian] : step_.wrt)
-    for (std::size_t i = 0; i < calibration_.size(); ++i)
-      if (block == calibration_[i] && !excitation_.excited(i)) jacobian.setZero();
+  excitation_.observe(calibration_jacobian_, to_robot * step_.cov_noise * to_robot.transpose(), dt);
+  considered_.clear();
+  for (std::size_t i = 0; i < calibration_.size(); ++i)
+    if (!excitation_.excited(i)) considered_.push_back(calibration_[i]);
 }
 
 UpdateOutcome EkfSlam::update(std::span<const Feature> features) {
@@ -153,7 +152,7 @@ UpdateOutcome EkfSlam::update(std::span<const Feature> features) {
   }
   {
     const PhaseTimer timer(times_, Phase::kUpdate);
-    const Correction correction = ekf_.correct(state_, pose_, accepted_);
+    const Correction correction = ekf_.correct(state_, pose_, accepted_, considered_);
     if (correction.applied) {
       outcome.accepted = static_cast<int>(accepted_.size());
       outcome.nis = correction.nis;

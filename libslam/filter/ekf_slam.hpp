@@ -63,7 +63,7 @@ class EkfSlam {
  private:
   class PairTest;
   void add_calibration();
-  void drop_unexcited(const MotionAction& action);
+  void observe_excitation(double dt);
   void add_landmarks(std::span<const Feature> features, UpdateOutcome& outcome);
 
   EkfSlamParts parts_;
@@ -74,6 +74,7 @@ class EkfSlam {
   Excitation excitation_;
   MotionStep step_;
   Eigen::Matrix3Xd calibration_jacobian_;
+  std::vector<BlockId> considered_;  // calibration that is not excited now
   std::vector<LinearizedMeasurement> accepted_;
   std::vector<Verdict> verdicts_;
   Initialization initialization_;

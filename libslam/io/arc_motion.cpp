@@ -1,12 +1,16 @@
-#include <Eigen/Geometry>
 #include <cmath>
+
+#include <Eigen/Geometry>
+
 #include <libslam/io/arc_motion.hpp>
 
 namespace libslam {
 namespace {
 
 /// Chord over arc of a turn of 2 a.
-double sinc(double a) { return std::abs(a) < 1e-4 ? 1.0 - a * a / 6.0 : std::sin(a) / a; }
+double sinc(double a) {
+  return std::abs(a) < 1e-4 ? 1.0 - a * a / 6.0 : std::sin(a) / a;
+}
 
 }  // namespace
 

@@ -6,8 +6,8 @@
 
 namespace libslam {
 
-/// Pose change dx [m], dy [m], dphi [rad] in the frame at the start of a motion whose arc (velocity times
-/// duration: forward [m], sideways [m], turn [rad]) is given.
+/// Pose change dx [m], dy [m], dphi [rad] in the frame at the start of a motion whose arc (velocity
+/// times duration: forward [m], sideways [m], turn [rad]) is given.
 Eigen::Vector3d increment_of_arc(const Eigen::Vector3d& arc);
 
 /// Inverse of `increment_of_arc` for turns in (-pi, pi].

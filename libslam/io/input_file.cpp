@@ -1,4 +1,5 @@
 #include <filesystem>
+
 #include <libslam/io/input_error.hpp>
 #include <libslam/io/input_file.hpp>
 
@@ -8,7 +9,8 @@ void require_input_file(const std::string& file) {
   std::error_code error;
   const auto status = std::filesystem::status(file, error);
   if (!std::filesystem::exists(status)) throw InputError(file + ": no such file");
-  if (std::filesystem::is_directory(status)) throw InputError(file + ": is a directory, not a file");
+  if (std::filesystem::is_directory(status))
+    throw InputError(file + ": is a directory, not a file");
   if (!std::filesystem::is_regular_file(status)) throw InputError(file + ": is not a regular file");
   if (std::filesystem::file_size(file, error) == 0) throw InputError(file + ": the file is empty");
 }

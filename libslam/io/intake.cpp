@@ -1,7 +1,8 @@
 #include <algorithm>
+#include <stdexcept>
+
 #include <libslam/io/input_error.hpp>
 #include <libslam/io/intake.hpp>
-#include <stdexcept>
 
 namespace libslam {
 namespace {
@@ -65,8 +66,10 @@ std::string Intake::place(std::int64_t entry, const std::string& what) const {
 }
 
 void Intake::warn(const std::string& text) {
-  if (summary_.warnings.size() < kMaxWarnings) summary_.warnings.push_back(text);
-  else ++summary_.warnings_omitted;
+  if (summary_.warnings.size() < kMaxWarnings)
+    summary_.warnings.push_back(text);
+  else
+    ++summary_.warnings_omitted;
 }
 
 }  // namespace libslam

@@ -9,16 +9,16 @@ namespace libslam {
 
 /// The `input` part of a run's summary.
 struct InputSummary {
-  std::int64_t entries = 0;       ///< objects read from the file
-  std::int64_t actions = 0;       ///< steps with a motion
-  std::int64_t observations = 0;  ///< observations other than odometry that reached a step
-  double duration_s = 0.0;        ///< from the first to the last step [s]
-  std::int64_t skipped = 0;       ///< entries, or parts of an entry, that were left out
-  std::int64_t repaired = 0;      ///< entries that were used after mending
-  bool leading_frame = false;     ///< observations came before the first motion
-  bool damaged = false;           ///< the file could not be read to its end
-  std::vector<std::string> warnings;      ///< the first ones, each naming its entry
-  std::int64_t warnings_omitted = 0;      ///< warnings beyond those kept
+  std::int64_t entries = 0;           ///< objects read from the file
+  std::int64_t actions = 0;           ///< steps with a motion
+  std::int64_t observations = 0;      ///< observations other than odometry that reached a step
+  double duration_s = 0.0;            ///< from the first to the last step [s]
+  std::int64_t skipped = 0;           ///< entries, or parts of an entry, that were left out
+  std::int64_t repaired = 0;          ///< entries that were used after mending
+  bool leading_frame = false;         ///< observations came before the first motion
+  bool damaged = false;               ///< the file could not be read to its end
+  std::vector<std::string> warnings;  ///< the first ones, each naming its entry
+  std::int64_t warnings_omitted = 0;  ///< warnings beyond those kept
 
   /// Part of the input was unusable: a program that otherwise succeeded exits with 5.
   bool incomplete() const { return damaged || skipped > 0; }
@@ -39,8 +39,8 @@ class Intake {
   /// returns false; repair: counted as repaired, returns true.
   bool may_repair(std::int64_t entry, const std::string& what);
 
-  /// Something that can be mended without loss, such as a wrong time in a log whose order carries the
-  /// motion. strict: throws InputError; else counted as repaired.
+  /// Something that can be mended without loss, such as a wrong time in a log whose order carries
+  /// the motion. strict: throws InputError; else counted as repaired.
   void mend(std::int64_t entry, const std::string& what);
 
   /// Something missing that old logs never had. Counted as repaired under every policy; one warning

@@ -1,8 +1,9 @@
+#include <algorithm>
+#include <cmath>
+
 #include <mrpt/obs/CActionRobotMovement2D.h>
 #include <mrpt/obs/CObservationBearingRange.h>
 
-#include <algorithm>
-#include <cmath>
 #include <libslam/io/log_inspection.hpp>
 #include <libslam/io/mrpt_fields.hpp>
 
@@ -72,8 +73,9 @@ void LogInspection::observe(const RawlogEntry& entry) {
 }
 
 void LogInspection::observe(const CObservation& observation) {
-  const std::string name = (observation.sensorLabel.empty() ? "(no label)" : observation.sensorLabel) +
-                           " (" + observation.GetRuntimeClass()->className + ")";
+  const std::string name =
+      (observation.sensorLabel.empty() ? "(no label)" : observation.sensorLabel) + " (" +
+      observation.GetRuntimeClass()->className + ")";
   if (sensors_.size() < kMaxSensors || sensors_.contains(name))
     count_time(sensors_[name], observation.timestamp);
   if (const auto* landmarks = dynamic_cast<const CObservationBearingRange*>(&observation))

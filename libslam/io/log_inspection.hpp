@@ -2,19 +2,20 @@
 // What a log holds, without running a filter on it.
 
 #include <cstdint>
-#include <libslam/data/log_step.hpp>
-#include <libslam/io/rawlog_guard.hpp>
 #include <map>
 #include <set>
 #include <string>
+
+#include <libslam/data/log_step.hpp>
+#include <libslam/io/rawlog_guard.hpp>
 
 namespace libslam {
 
 /// One sensor: a label and the class of its observations.
 struct SensorStatistics {
   std::int64_t count = 0;
-  std::int64_t invalid_times = 0;    ///< no valid stamp
-  std::int64_t backward_times = 0;   ///< stamp before that of the observation before
+  std::int64_t invalid_times = 0;            ///< no valid stamp
+  std::int64_t backward_times = 0;           ///< stamp before that of the observation before
   double first_time = 0.0, last_time = 0.0;  ///< earliest and latest valid stamp [s]
   double longest_gap = 0.0;                  ///< [s]
   /// Mean rate [1/s]; 0 where it cannot be told.
@@ -22,22 +23,23 @@ struct SensorStatistics {
 };
 
 struct OdometryStatistics {
-  std::int64_t motions = 0;           ///< steps with a planar motion
-  std::int64_t with_covariance = 0;   ///< of them with a covariance of their own
-  std::int64_t with_velocities = 0;   ///< of them with velocities
-  std::int64_t velocities_agree = 0;  ///< velocity times dt is the increment within 10 % + 1 cm or 0.01 rad
-  std::int64_t with_ticks = 0;        ///< of them with encoder ticks
-  double path_length = 0.0;           ///< [m]
-  double total_turn = 0.0;            ///< sum of |dphi| [rad]
-  double max_speed = 0.0;             ///< [m/s], over steps with a known dt
-  double max_turn_rate = 0.0;         ///< [rad/s]
+  std::int64_t motions = 0;          ///< steps with a planar motion
+  std::int64_t with_covariance = 0;  ///< of them with a covariance of their own
+  std::int64_t with_velocities = 0;  ///< of them with velocities
+  std::int64_t velocities_agree =
+      0;  ///< velocity times dt is the increment within 10 % + 1 cm or 0.01 rad
+  std::int64_t with_ticks = 0;  ///< of them with encoder ticks
+  double path_length = 0.0;     ///< [m]
+  double total_turn = 0.0;      ///< sum of |dphi| [rad]
+  double max_speed = 0.0;       ///< [m/s], over steps with a known dt
+  double max_turn_rate = 0.0;   ///< [rad/s]
 };
 
 struct LandmarkStatistics {
   std::int64_t sightings = 0;
   std::int64_t with_identity = 0;
-  std::int64_t unusable = 0;          ///< range not positive, or something not finite
-  std::set<std::int32_t> identities;  ///< no more than 100000 are kept
+  std::int64_t unusable = 0;                ///< range not positive, or something not finite
+  std::set<std::int32_t> identities;        ///< no more than 100000 are kept
   double min_range = 0.0, max_range = 0.0;  ///< of usable sightings [m]
 };
 

@@ -1,11 +1,11 @@
+#include <array>
+#include <charconv>
 #include <fcntl.h>
+#include <mutex>
 #include <sys/resource.h>
 #include <unistd.h>
 
-#include <array>
-#include <charconv>
 #include <libslam/io/memory_budget.hpp>
-#include <mutex>
 
 #if defined(__has_feature)
 #if __has_feature(address_sanitizer)
@@ -41,6 +41,10 @@ std::uint64_t address_space() {
 }
 
 }  // namespace
+
+bool MemoryBudget::supported() {
+  return kSupported && address_space() > 0;
+}
 
 MemoryBudget::MemoryBudget(std::uint64_t bytes) {
   const std::uint64_t used = kSupported ? address_space() : 0;

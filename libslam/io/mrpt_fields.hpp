@@ -1,10 +1,10 @@
 #pragma once
 // Fields of MRPT objects that files may hold in a form that cannot be used as it is.
 
-#include <mrpt/system/datetime.h>
-
 #include <cstring>
 #include <optional>
+
+#include <mrpt/system/datetime.h>
 
 namespace libslam {
 

@@ -1,12 +1,13 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
 #include <mrpt/obs/CActionRobotMovement2D.h>
 #include <mrpt/poses/CPosePDFGaussian.h>
 
-#include <algorithm>
-#include <cmath>
 #include <libslam/io/arc_motion.hpp>
 #include <libslam/io/observation_splitter.hpp>
-#include <limits>
-#include <utility>
 
 namespace libslam {
 namespace {
@@ -15,7 +16,9 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 using mrpt::poses::CPose2D;
 
-CPose2D to_pose(const Eigen::Vector3d& p) { return {p.x(), p.y(), p.z()}; }
+CPose2D to_pose(const Eigen::Vector3d& p) {
+  return {p.x(), p.y(), p.z()};
+}
 
 /// Counter difference that survives one overflow of the 32-bit counter.
 std::int64_t counter_difference(std::int32_t now, std::int32_t before) {
@@ -64,8 +67,10 @@ void ObservationSplitter::release_interval() {
   while (!waiting_.empty() && waiting_.front().time < end_->time) {
     const double time = waiting_.front().time;
     auto frame = take_frame();
-    if (time <= begin_->time) emit(time, nullptr, 0.0, std::move(frame));
-    else emit_part(time, std::move(frame), done);
+    if (time <= begin_->time)
+      emit(time, nullptr, 0.0, std::move(frame));
+    else
+      emit_part(time, std::move(frame), done);
   }
   const bool shared = !waiting_.empty() && waiting_.front().time <= end_->time;
   emit_part(end_->time, shared ? take_frame() : nullptr, done);

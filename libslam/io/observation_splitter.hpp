@@ -1,39 +1,42 @@
 #pragma once
 // Observation-only logs: absolute odometry and time stamps become motions and frames in turn.
 
-#include <mrpt/obs/CObservation.h>
-
-#include <Eigen/Core>
 #include <array>
 #include <cstdint>
 #include <deque>
-#include <libslam/data/log_step.hpp>
 #include <optional>
 #include <vector>
+
+#include <Eigen/Core>
+#include <mrpt/obs/CObservation.h>
+
+#include <libslam/data/log_step.hpp>
 
 namespace libslam {
 
 /// One odometry reading: a pose in the odometry frame, absolute.
 struct OdometryReading {
-  double time = 0.0;                                 ///< [s]
-  Eigen::Vector3d pose = Eigen::Vector3d::Zero();    ///< x [m], y [m], phi [rad]
-  std::optional<Eigen::Vector3d> velocity;           ///< vx, vy [m/s], omega [rad/s]: mean since the
-                                                     ///< previous reading
+  double time = 0.0;                               ///< [s]
+  Eigen::Vector3d pose = Eigen::Vector3d::Zero();  ///< x [m], y [m], phi [rad]
+  std::optional<Eigen::Vector3d> velocity;         ///< vx, vy [m/s], omega [rad/s]: mean since the
+                                                   ///< previous reading
   std::optional<std::array<std::int32_t, 2>> ticks;  ///< absolute counters left, right; may wrap
 };
 
 /// Places every observation at its time stamp inside the odometry.
 ///
 /// The interval between two readings is cut at the observations within it, in proportion to time
-/// (constant velocity), so that the increments of its parts compose to the difference of the absolute
-/// poses. All parts carry the mean velocity that the log gave for the interval. Ticks are cut by
-/// rounding the running total: their sum is exact and no cut is off by more than half a tick.
-/// Observations of equal time become one frame; an observation at the time of a reading shares its step.
+/// (constant velocity), so that the increments of its parts compose to the difference of the
+/// absolute poses. All parts carry the mean velocity that the log gave for the interval. Ticks are
+/// cut by rounding the running total: their sum is exact and no cut is off by more than half a
+/// tick. Observations of equal time become one frame; an observation at the time of a reading
+/// shares its step.
 ///
-/// An interval is released when the reading after it arrives: an observation may stand in the file up
-/// to one reading late. Observations after the last reading get no motion, and so do those before the
-/// first. Memory: one interval, and no more than `max_pending_bytes` of waiting observations; beyond
-/// that (odometry that stopped) they are released without motion, which is then applied later.
+/// An interval is released when the reading after it arrives: an observation may stand in the file
+/// up to one reading late. Observations after the last reading get no motion, and so do those
+/// before the first. Memory: one interval, and no more than `max_pending_bytes` of waiting
+/// observations; beyond that (odometry that stopped) they are released without motion, which is
+/// then applied later.
 class ObservationSplitter {
  public:
   static constexpr std::uint64_t kMaxPendingBytes = 256ULL << 20;
@@ -75,7 +78,7 @@ class ObservationSplitter {
 
   std::uint64_t max_pending_bytes_;
   std::uint64_t pending_bytes_ = 0;
-  std::deque<Waiting> waiting_;  ///< by time; equal times in order of arrival
+  std::deque<Waiting> waiting_;                 ///< by time; equal times in order of arrival
   std::optional<OdometryReading> begin_, end_;  ///< the interval that is open
   double step_time_;
   std::deque<LogStep> ready_;

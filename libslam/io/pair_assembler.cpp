@@ -1,13 +1,14 @@
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
 #include <Eigen/Dense>  // before any use of asEigen()
 #include <mrpt/obs/CActionRobotMovement2D.h>
 #include <mrpt/obs/CActionRobotMovement3D.h>
 #include <mrpt/poses/CPosePDFGaussian.h>
 
-#include <algorithm>
-#include <cmath>
 #include <libslam/io/mrpt_fields.hpp>
 #include <libslam/io/pair_assembler.hpp>
-#include <utility>
 
 namespace libslam {
 namespace {
@@ -45,8 +46,10 @@ bool check(CActionRobotMovement2D& motion, Intake& intake, std::int64_t entry) {
     return false;
   }
   if (!intake.may_repair(entry, "motion is not finite in one of its two forms")) return false;
-  if (raw_good) motion.poseChange = certain(motion.rawOdometryIncrementReading);
-  else motion.rawOdometryIncrementReading = mean;
+  if (raw_good)
+    motion.poseChange = certain(motion.rawOdometryIncrementReading);
+  else
+    motion.rawOdometryIncrementReading = mean;
   return true;
 }
 
@@ -57,13 +60,14 @@ bool check(CActionRobotMovement3D& motion, Intake& intake, std::int64_t entry) {
 }
 
 /// The usable actions of a collection; null where none is left.
-mrpt::obs::CActionCollection::Ptr usable(const mrpt::obs::CActionCollection& actions, Intake& intake,
-                                         std::int64_t entry) {
+mrpt::obs::CActionCollection::Ptr usable(const mrpt::obs::CActionCollection& actions,
+                                         Intake& intake, std::int64_t entry) {
   auto kept = mrpt::obs::CActionCollection::Create();
   for (const auto& item : actions) {
     const CAction::Ptr& action = item.get_ptr();
     bool good = action != nullptr;
-    if (!good) intake.skip(entry, "null action");
+    if (!good)
+      intake.skip(entry, "null action");
     else if (auto* planar = dynamic_cast<CActionRobotMovement2D*>(action.get()))
       good = check(*planar, intake, entry);
     else if (auto* spatial = dynamic_cast<CActionRobotMovement3D*>(action.get()))
@@ -96,7 +100,8 @@ std::optional<double> first_stamp(const Container& items) {
 
 }  // namespace
 
-void PairAssembler::add_action(const mrpt::obs::CActionCollection::Ptr& action, std::int64_t entry) {
+void PairAssembler::add_action(const mrpt::obs::CActionCollection::Ptr& action,
+                               std::int64_t entry) {
   if (waiting_) emit(nullptr, waiting_entry_);
   waiting_ = usable(*action, intake_, entry);
   waiting_entry_ = entry;
@@ -111,7 +116,8 @@ void PairAssembler::finish() {
 }
 
 double PairAssembler::place(std::optional<double> stamp, std::int64_t entry) {
-  if (!stamp) intake_.fill_in(entry, "no valid time stamp");
+  if (!stamp)
+    intake_.fill_in(entry, "no valid time stamp");
   else if (any_step_ && *stamp < time_) {
     intake_.mend(entry, "time goes back by " + std::to_string(time_ - *stamp) + " s");
     stamp.reset();

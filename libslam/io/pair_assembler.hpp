@@ -1,26 +1,26 @@
 #pragma once
 // Logs of (action, frame) pairs: each pair becomes one step, with a time that can be trusted.
 
+#include <cstdint>
+#include <deque>
+#include <optional>
+
 #include <mrpt/obs/CActionCollection.h>
 #include <mrpt/obs/CSensoryFrame.h>
 
-#include <cstdint>
-#include <deque>
 #include <libslam/data/log_step.hpp>
 #include <libslam/io/intake.hpp>
-#include <optional>
 
 namespace libslam {
 
 /// Turns the entries of a pair log into steps.
 ///
 /// A frame without an action before it (the leading frame of many logs) becomes a step with a null
-/// action, an action without a frame after it a step with a null frame. The time of a step is that of
-/// its first observation with a valid stamp, else that of the action, else the time of the step before;
-/// it never goes backwards, because here the order of the log, not the clock, carries the motion. `dt`
-/// is given only where both ends of the motion have a valid stamp.
-/// Motions that are not finite, null objects and flags with garbage in them (old logs) are handled as
-/// `intake` says.
+/// action, an action without a frame after it a step with a null frame. The time of a step is that
+/// of its first observation with a valid stamp, else that of the action, else the time of the step
+/// before; it never goes backwards, because here the order of the log, not the clock, carries the
+/// motion. `dt` is given only where both ends of the motion have a valid stamp. Motions that are
+/// not finite, null objects and flags with garbage in them (old logs) are handled as `intake` says.
 class PairAssembler {
  public:
   explicit PairAssembler(Intake& intake) : intake_(intake) {}

@@ -1,8 +1,9 @@
 #include <cmath>
-#include <libslam/io/playback_pace.hpp>
 #include <stdexcept>
 #include <string>
 #include <thread>
+
+#include <libslam/io/playback_pace.hpp>
 
 namespace libslam {
 namespace {

@@ -3,8 +3,9 @@
 
 #include <chrono>
 #include <functional>
-#include <libslam/data/log_step.hpp>
 #include <optional>
+
+#include <libslam/data/log_step.hpp>
 
 namespace libslam {
 
@@ -17,8 +18,8 @@ enum class PaceMode {
 struct Pacing {
   PaceMode mode = PaceMode::kFast;
   double factor = 1.0;  ///< > 0; 2 plays twice as fast as the log was recorded
-  /// Asked in every mode before a step is delivered, and again while waiting; false ends the playback.
-  /// In step mode it blocks until the step is wanted.
+  /// Asked in every mode before a step is delivered, and again while waiting; false ends the
+  /// playback. In step mode it blocks until the step is wanted.
   std::function<bool(const LogStep&)> before_step;
 };
 

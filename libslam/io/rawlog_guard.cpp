@@ -1,3 +1,10 @@
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <string_view>
+
 #include <mrpt/io/CFileGZInputStream.h>
 #include <mrpt/obs/CActionCollection.h>
 #include <mrpt/obs/CObservation.h>
@@ -5,16 +12,10 @@
 #include <mrpt/rtti/CObject.h>
 #include <mrpt/serialization/CArchive.h>
 
-#include <algorithm>
-#include <array>
-#include <cstring>
-#include <filesystem>
-#include <fstream>
 #include <libslam/io/input_error.hpp>
 #include <libslam/io/input_file.hpp>
 #include <libslam/io/memory_budget.hpp>
 #include <libslam/io/rawlog_guard.hpp>
-#include <string_view>
 
 namespace libslam {
 namespace {
@@ -35,8 +36,8 @@ std::string first_line(const std::exception& error) {
   return std::string(text.substr(0, text.find('\n')));
 }
 
-/// Decompressed size that a gzip file claims in its last four bytes (modulo 2^32), else the file size.
-/// Serves the progress display alone: the number is untrusted.
+/// Decompressed size that a gzip file claims in its last four bytes (modulo 2^32), else the file
+/// size. Serves the progress display alone: the number is untrusted.
 std::uint64_t expected_bytes(const std::string& file, std::uint64_t file_bytes) {
   std::ifstream in(file, std::ios::binary);
   std::array<unsigned char, 2> magic{};
@@ -58,11 +59,14 @@ EntryKind kind_of(const mrpt::rtti::TRuntimeClassId& id) {
   return EntryKind::kForeign;
 }
 
-std::string mebibytes(std::uint64_t bytes) { return std::to_string(bytes >> 20) + " MiB"; }
+std::string mebibytes(std::uint64_t bytes) {
+  return std::to_string(bytes >> 20) + " MiB";
+}
 
 /// A class name made harmless for a one-line message.
 std::string printable(std::string text) {
-  std::replace_if(text.begin(), text.end(), [](unsigned char c) { return c < 32 || c > 126; }, '?');
+  std::replace_if(
+      text.begin(), text.end(), [](unsigned char c) { return c < 32 || c > 126; }, '?');
   return text;
 }
 
@@ -72,7 +76,8 @@ std::string printable(std::string text) {
 class RawlogGuard::Stream : public mrpt::io::CStream {
  public:
   Stream(const std::string& file, const GuardLimits& limits)
-      : limits_(limits), file_bytes_(std::filesystem::file_size(file)),
+      : limits_(limits),
+        file_bytes_(std::filesystem::file_size(file)),
         expected_bytes_(expected_bytes(file, file_bytes_)) {
     if (!source_.open(file)) throw InputError(file + ": cannot be opened for reading");
   }
@@ -100,7 +105,8 @@ class RawlogGuard::Stream : public mrpt::io::CStream {
     ahead_.erase(0, from_ahead);
     std::size_t got = from_ahead;
     if (got < count) got += fetch(static_cast<char*>(buffer) + got, count - got);
-    if (got < count && reason_.empty()) reason_ = "the file ends in the middle of this entry (truncated)";
+    if (got < count && reason_.empty())
+      reason_ = "the file ends in the middle of this entry (truncated)";
     entry_bytes_ += got;
     total_bytes_ += got;
     return got;
@@ -202,7 +208,8 @@ std::optional<RawlogEntry> RawlogGuard::next() {
   entry.class_name = header_class(*stream_);
   if (entry.class_name.empty()) return fail("the bytes here are no MRPT object");
   const auto* id = mrpt::rtti::findRegisteredClass(entry.class_name);
-  if (id != nullptr) entry.kind = kind_of(*id);
+  if (id != nullptr)
+    entry.kind = kind_of(*id);
   else if (entry.class_name != "nullptr")
     return fail("unknown class '" + printable(entry.class_name) + "'");
   try {

@@ -1,12 +1,13 @@
 #pragma once
-// Objects of an untrusted rawlog, one at a time, behind limits that MRPT's own reader does not have.
-
-#include <mrpt/serialization/CSerializable.h>
+// Objects of an untrusted rawlog, one at a time, behind limits that MRPT's own reader does not
+// have.
 
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
+
+#include <mrpt/serialization/CSerializable.h>
 
 namespace libslam {
 
@@ -16,7 +17,8 @@ struct GuardLimits {
   std::uint64_t memory_bytes = 512ULL << 20;  ///< memory that reading one entry may claim
   std::uint64_t total_bytes = 1ULL << 40;     ///< decompressed size of the whole log
   double expansion = 200.0;  ///< decompressed / compressed size, beyond `free_bytes`
-  std::uint64_t free_bytes = 64ULL << 20;  ///< decompressed size below which expansion is not judged
+  std::uint64_t free_bytes = 64ULL
+                             << 20;  ///< decompressed size below which expansion is not judged
 };
 
 enum class EntryKind { kAction, kFrame, kObservation, kForeign };
@@ -32,10 +34,11 @@ struct RawlogEntry {
 
 /// Reads a rawlog, compressed with gzip or not, with bounded memory.
 ///
-/// A file that is no rawlog at all is rejected with InputError: by the constructor where the file itself
-/// says so (missing, a directory, empty, no class of a rawlog at its start), by the first `next` where
-/// its first entry cannot be read. A defect further on ends the log: `next` returns nothing, and
-/// `damage` says what was found; entries have no length on disk, so there is nothing to resume at.
+/// A file that is no rawlog at all is rejected with InputError: by the constructor where the file
+/// itself says so (missing, a directory, empty, no class of a rawlog at its start), by the first
+/// `next` where its first entry cannot be read. A defect further on ends the log: `next` returns
+/// nothing, and `damage` says what was found; entries have no length on disk, so there is nothing
+/// to resume at.
 class RawlogGuard {
  public:
   explicit RawlogGuard(const std::string& file, const GuardLimits& limits = {});

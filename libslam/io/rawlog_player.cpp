@@ -1,10 +1,11 @@
+#include <cmath>
+
 #include <mrpt/img/CImage.h>
 #include <mrpt/obs/CObservationBearingRange.h>
 #include <mrpt/obs/CObservationComment.h>
 #include <mrpt/obs/CObservationOdometry.h>
 #include <mrpt/obs/CRawlog.h>
 
-#include <cmath>
 #include <libslam/io/mrpt_fields.hpp>
 #include <libslam/io/rawlog_player.hpp>
 
@@ -15,7 +16,8 @@ using mrpt::obs::CObservation;
 using mrpt::obs::CObservationBearingRange;
 using mrpt::obs::CObservationOdometry;
 
-/// Pair logs show an action within their first entries; comments and a leading frame may precede it.
+/// Pair logs show an action within their first entries; comments and a leading frame may precede
+/// it.
 constexpr std::size_t kFlavourEntries = 16;
 
 OdometryReading reading_of(CObservationOdometry& odometry, double time) {
@@ -25,7 +27,8 @@ OdometryReading reading_of(CObservationOdometry& odometry, double time) {
   reading.time = time;
   reading.pose = {odometry.odometry.x(), odometry.odometry.y(), odometry.odometry.phi()};
   const auto& v = odometry.velocityLocal;
-  if (odometry.hasVelocities && std::isfinite(v.vx) && std::isfinite(v.vy) && std::isfinite(v.omega))
+  if (odometry.hasVelocities && std::isfinite(v.vx) && std::isfinite(v.vy) &&
+      std::isfinite(v.omega))
     reading.velocity = {v.vx, v.vy, v.omega};
   if (odometry.hasEncodersInfo)
     reading.ticks = {odometry.encoderLeftTicks, odometry.encoderRightTicks};
@@ -35,8 +38,11 @@ OdometryReading reading_of(CObservationOdometry& odometry, double time) {
 }  // namespace
 
 RawlogPlayer::RawlogPlayer(const std::string& file, const PlayerOptions& options)
-    : options_(options), intake_(file, options.input.policy), guard_(file, options.limits),
-      pairs_(intake_), pace_(options.pacing) {
+    : options_(options),
+      intake_(file, options.input.policy),
+      guard_(file, options.limits),
+      pairs_(intake_),
+      pace_(options.pacing) {
   mrpt::img::CImage::setImagesPathBase(mrpt::obs::CRawlog::detectImagesDirectory(file));
   decide_flavour();
 }
@@ -92,9 +98,12 @@ void RawlogPlayer::dispatch(const RawlogEntry& entry) {
       if (is_pair_log_)
         pairs_.add_action(std::dynamic_pointer_cast<mrpt::obs::CActionCollection>(entry.object),
                           entry.number);
-      else intake_.skip(entry.number, "action in an observation-only log");
+      else
+        intake_.skip(entry.number, "action in an observation-only log");
       return;
-    case EntryKind::kFrame: add_frame(entry); return;
+    case EntryKind::kFrame:
+      add_frame(entry);
+      return;
     case EntryKind::kObservation:
       add_observation(std::dynamic_pointer_cast<CObservation>(entry.object), entry, entry.bytes);
       return;
@@ -118,9 +127,12 @@ void RawlogPlayer::add_frame(const RawlogEntry& entry) {
   const auto frame = std::dynamic_pointer_cast<mrpt::obs::CSensoryFrame>(entry.object);
   auto kept = mrpt::obs::CSensoryFrame::Create();
   for (const CObservation::Ptr& observation : *frame) {
-    if (!observation) intake_.skip(entry.number, "null observation in a frame");
-    else if (!is_pair_log_) add_observation(observation, entry, entry.bytes / frame->size());
-    else if (wanted(*observation)) kept->insert(observation);
+    if (!observation)
+      intake_.skip(entry.number, "null observation in a frame");
+    else if (!is_pair_log_)
+      add_observation(observation, entry, entry.bytes / frame->size());
+    else if (wanted(*observation))
+      kept->insert(observation);
   }
   if (is_pair_log_) pairs_.add_frame(kept, entry.number);
 }
@@ -140,7 +152,8 @@ void RawlogPlayer::add_observation(const CObservation::Ptr& observation, const R
   const double present = std::max(splitter_.open_time(), splitter_.last_reading_time());
   const auto stamp = stamp_seconds(observation->timestamp);
   double time = stamp.value_or(std::isfinite(present) ? present : 0.0);
-  if (!stamp) intake_.fill_in(entry.number, "no valid time stamp");
+  if (!stamp)
+    intake_.fill_in(entry.number, "no valid time stamp");
   else if (time < splitter_.open_time()) {
     const double late = splitter_.open_time() - time;
     if (!intake_.may_repair(entry.number, "observation is " + std::to_string(late) + " s late"))
@@ -160,7 +173,8 @@ void RawlogPlayer::add_odometry(CObservationOdometry& odometry, const RawlogEntr
     intake_.skip(entry.number, "odometry is not finite");
     return;
   }
-  if (!stamp) intake_.fill_in(entry.number, "no valid time stamp");
+  if (!stamp)
+    intake_.fill_in(entry.number, "no valid time stamp");
   else if (time < last) {
     if (!intake_.may_repair(entry.number,
                             "odometry goes back in time by " + std::to_string(last - time) + " s"))

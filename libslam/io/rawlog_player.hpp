@@ -1,10 +1,14 @@
 #pragma once
 // The one source of log steps: a rawlog of either flavour, streamed with bounded memory.
 
-#include <mrpt/obs/CObservationOdometry.h>
-
 #include <cstdint>
 #include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include <mrpt/obs/CObservationOdometry.h>
+
 #include <libslam/config/parameters.hpp>
 #include <libslam/data/log_step.hpp>
 #include <libslam/io/intake.hpp>
@@ -12,9 +16,6 @@
 #include <libslam/io/pair_assembler.hpp>
 #include <libslam/io/playback_pace.hpp>
 #include <libslam/io/rawlog_guard.hpp>
-#include <memory>
-#include <optional>
-#include <string>
 
 namespace libslam {
 
@@ -30,16 +31,18 @@ struct PlayerOptions {
 ///
 /// Given   (action, frame) pairs, one step for each pair (PairAssembler);
 /// given   observations one after another, or frames without actions, with absolute odometry among
-///         them, one step for each odometry reading and each observation time (ObservationSplitter).
+///         them, one step for each odometry reading and each observation time
+///         (ObservationSplitter).
 /// The flavour is decided by whether an action is among the first entries; entries of the other
 /// flavour are left out with a warning, since using both would count the motion twice.
 ///
-/// Defects are handled as `input.policy` says: strict throws InputError at the first one; skip leaves
-/// out what cannot be used; repair also uses what can be mended. In observation-only logs, whose times
-/// carry the motion, an entry that goes back in time is left out (skip) or moved to the present
-/// (repair). A file whose rest is unreadable ends there, with a warning (`summary().damaged`); strict
-/// throws. Externally stored images are found beside the log as MRPT's own programs find them; the
-/// directory is a global of MRPT (CImage), so two logs with external images cannot be played at once.
+/// Defects are handled as `input.policy` says: strict throws InputError at the first one; skip
+/// leaves out what cannot be used; repair also uses what can be mended. In observation-only logs,
+/// whose times carry the motion, an entry that goes back in time is left out (skip) or moved to the
+/// present (repair). A file whose rest is unreadable ends there, with a warning
+/// (`summary().damaged`); strict throws. Externally stored images are found beside the log as
+/// MRPT's own programs find them; the directory is a global of MRPT (CImage), so two logs with
+/// external images cannot be played at once.
 class RawlogPlayer {
  public:
   /// Throws InputError if `file` is not a rawlog, std::invalid_argument on an unknown policy.

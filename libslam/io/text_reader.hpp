@@ -13,9 +13,9 @@ class CFileGZInputStream;
 
 namespace libslam {
 
-/// Reads a table row by row with bounded memory. Cells are separated by commas where the row has one,
-/// else by blanks. Empty rows and rows that begin with # or % are left out.
-/// Every error is an InputError "file:line: ...".
+/// Reads a table row by row with bounded memory. Cells are separated by commas where the row has
+/// one, else by blanks. Empty rows and rows that begin with # or % are left out. Every error is an
+/// InputError "file:line: ...".
 class TextReader {
  public:
   /// Throws InputError if `file` cannot be read.

@@ -1,12 +1,14 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <set>
+
+#include <nlohmann/json.hpp>
+
 #include <libslam/io/input_error.hpp>
 #include <libslam/io/input_file.hpp>
 #include <libslam/io/text_reader.hpp>
 #include <libslam/io/truth_reader.hpp>
-#include <nlohmann/json.hpp>
-#include <set>
 
 namespace libslam {
 namespace {
@@ -54,8 +56,10 @@ Trajectory read_true_path(const std::string& file) {
       row.reject("a path has 8 (TUM) or 6 (x y z yaw pitch roll) columns, not " +
                  std::to_string(columns));
     if (row.columns() != columns) row.reject("the number of columns changes");
-    if (columns == kTumColumns) read_tum_row(row, path);
-    else path.poses.emplace_back(row.number(0), row.number(1), row.number(3));
+    if (columns == kTumColumns)
+      read_tum_row(row, path);
+    else
+      path.poses.emplace_back(row.number(0), row.number(1), row.number(3));
   }
   if (path.poses.empty()) throw InputError(file + ": holds no poses");
   return path;

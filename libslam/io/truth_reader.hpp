@@ -1,16 +1,18 @@
 #pragma once
 // Ground truth from files: the forms that libslam's programs write and those that MRPT ships.
 
-#include <libslam/data/ground_truth.hpp>
 #include <map>
 #include <string>
 #include <vector>
+
+#include <libslam/data/ground_truth.hpp>
 
 namespace libslam {
 
 /// A path, recognised by its number of columns:
 ///   8  TUM: t x y z qx qy qz qw (time [s], quaternion with w last); planar pose x, y, yaw;
-///   6  MRPT: x y z yaw pitch roll without times; row i belongs to step i of the log, counting a leading
+///   6  MRPT: x y z yaw pitch roll without times; row i belongs to step i of the log, counting a
+///   leading
 ///      frame as step 0 (checked on kf-slam_demo: pair k is row k + 1, both from 0).
 /// Throws InputError where a row cannot be read, times go backwards or a quaternion is zero.
 Trajectory read_true_path(const std::string& file);
@@ -35,8 +37,8 @@ struct TruthFiles {
   std::string path, landmarks, notes;
 };
 
-/// The files that stand beside `rawlog` (X.rawlog): X.truth.tum, X.landmarks.csv, X.truth.json, else
-/// MRPT's X_ground_truth_robot_path.txt and X_ground_truth.txt.
+/// The files that stand beside `rawlog` (X.rawlog): X.truth.tum, X.landmarks.csv, X.truth.json,
+/// else MRPT's X_ground_truth_robot_path.txt and X_ground_truth.txt.
 TruthFiles find_truth(const std::string& rawlog);
 
 /// Reads what `files` names. Throws InputError.

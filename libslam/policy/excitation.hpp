@@ -7,8 +7,8 @@
 // compares, over windows of about a second, the motion that the parameter scales with the odometry noise
 // in it, both whitened:  snr = (c J)^T Q^-1 (c J),  J the summed body-frame derivative of the pose with
 // respect to the parameter, c its nominal value, Q the summed process noise. While the running mean of
-// snr is below `kThreshold` the parameter is left out of the motion Jacobian: it keeps its estimate and
-// its uncertainty.
+// snr is below `kThreshold` the filter considers the parameter (Schmidt-Kalman) instead of estimating it:
+// its uncertainty counts, its estimate and covariance stay.
 
 #include <Eigen/Core>
 #include <vector>

@@ -8,6 +8,7 @@
 #include <mrpt/math/wrap2pi.h>
 
 #include <libslam/result/metrics.hpp>
+#include <libslam/result/run_axis.hpp>
 #include <libslam/state/chi_square.hpp>
 
 namespace libslam {
@@ -149,16 +150,16 @@ std::optional<NeesSummary> summarize_nees(std::span<const EstimatedPose> estimat
                                           std::span<const double> values) {
   if (matches.empty()) return std::nullopt;
   const double lower = chi_square_quantile(0.025, 3), upper = chi_square_quantile(0.975, 3);
-  const double begin = estimate[matches.front().estimate].time;
-  const double span = estimate[matches.back().estimate].time - begin;
+  const RunAxis axis(estimate);
+  const double begin = axis.at(estimate[matches.front().estimate]);
+  const double span = axis.at(estimate[matches.back().estimate]) - begin;
   std::array<double, 4> sums{};
   std::array<int, 4> counts{};
   std::vector<double> finite;
   NeesSummary summary;
   for (std::size_t i = 0; i < matches.size(); ++i) {
     if (!std::isfinite(values[i])) continue;
-    const double part = span > 0.0 ? (estimate[matches[i].estimate].time - begin) / span
-                                   : static_cast<double>(i) / static_cast<double>(matches.size());
+    const double part = span > 0.0 ? (axis.at(estimate[matches[i].estimate]) - begin) / span : 0.0;
     const auto quarter = std::min<std::size_t>(3, static_cast<std::size_t>(4.0 * part));
     sums[quarter] += values[i];
     ++counts[quarter];

@@ -49,7 +49,8 @@ struct NeesSummary {
   int steps = 0;  ///< matched steps with a positive definite covariance
   double mean = 0, median = 0;
   double in_95 = 0;  ///< fraction between the 2.5 % and the 97.5 % quantile
-  std::array<std::optional<double>, 4> quarter_mean;  ///< by quarter of the matched time span
+  std::array<std::optional<double>, 4>
+      quarter_mean;  ///< by quarter of the matched part of the run (RunAxis)
 };
 
 /// Position errors of point landmarks [m]; raw under the placement of the path, aligned by their

@@ -1,4 +1,5 @@
 #include <array>
+#include <cmath>
 #include <sstream>
 #include <stdexcept>
 
@@ -46,6 +47,15 @@ void append(std::ofstream& out, const std::string& text, const fs::path& file) {
   if (!out) throw std::runtime_error("cannot write " + file.string());
 }
 
+/// A row that cannot be read back would cost the whole file at the end.
+void check_finite(const StepRecord& step) {
+  bool finite = std::isfinite(step.time) && step.pose.allFinite() && step.cov.allFinite() &&
+                std::isfinite(step.nis);
+  for (const CalibrationValue& value : step.calibration)
+    finite = finite && std::isfinite(value.mean) && std::isfinite(value.sigma);
+  if (!finite) throw std::invalid_argument("step " + std::to_string(step.index) + " is not finite");
+}
+
 std::map<std::string, double> means_of(const std::vector<CalibrationValue>& calibration) {
   std::map<std::string, double> means;
   for (const CalibrationValue& value : calibration) means[value.name] = value.mean;
@@ -61,6 +71,7 @@ Recorder::Recorder(RecorderOptions options) : options_(std::move(options)) {
 }
 
 void Recorder::record(const StepRecord& step) {
+  check_finite(step);
   statistics_.add(step);
   last_ = step;
   last_is_written_ = !has_header_ || step.nis_dof > 0 ||

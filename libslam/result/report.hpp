@@ -20,7 +20,7 @@ struct ReportInput {
   std::span<const EstimatedPose> path;
   std::filesystem::path trajectory_csv;  ///< read once more for innovations and calibration
   const GroundTruth& truth;              ///< may be empty
-  const SeriesEnvelope& step_times;      ///< [ms] over log time
+  const SeriesEnvelope& step_times;      ///< [ms] over the number of the step
 };
 
 /// Folder that holds d3/d3.min.js or d3.min.js: $LIBSLAM_JS_DIR, else the one found at

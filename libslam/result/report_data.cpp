@@ -11,6 +11,7 @@
 
 #include <libslam/result/alignment.hpp>
 #include <libslam/result/report_data.hpp>
+#include <libslam/result/run_axis.hpp>
 #include <libslam/state/chi_square.hpp>
 
 namespace libslam {
@@ -153,10 +154,9 @@ Json band(const char* name, const SeriesEnvelope& series, std::size_t low, std::
 }
 
 /// Errors in the filter's frame with their sigmas, and NEES, over the matched poses.
-void add_error_plots(Json& plots, const ReportInput& in, std::span<const PoseMatch> matches,
-                     const TPose2D& T_truth_filter) {
+void add_error_plots(Json& plots, const ReportInput& in, const RunAxis& axis,
+                     std::span<const PoseMatch> matches, const TPose2D& T_truth_filter) {
   const bool heading = in.truth.path.has_heading;
-  const double start = in.path.front().time;
   const TPose2D T_filter_truth = invert(T_truth_filter);
   const std::vector<double> nees =
       heading ? pose_nees(in.path, in.truth.path, matches) : std::vector<double>();
@@ -168,7 +168,7 @@ void add_error_plots(Json& plots, const ReportInput& in, std::span<const PoseMat
         estimate.pose - transform_pose(T_filter_truth, in.truth.path.poses[matches[i].truth]);
     e.z() = heading ? mrpt::math::wrapToPi(e.z()) : kNone;
     const Eigen::Vector3d bound = 3.0 * estimate.cov.diagonal().cwiseMax(0.0).cwiseSqrt();
-    const double time = estimate.time - start;
+    const double time = axis.at(estimate);
     errors.add(time, std::array{e.x(), e.y(), e.z(), -bound.x(), bound.x(), -bound.y(), bound.y(),
                                 -bound.z(), bound.z()});
     if (heading) consistency.add(time, std::array{nees[i], mean_nees.add(nees[i])});
@@ -206,7 +206,7 @@ void add_error_plots(Json& plots, const ReportInput& in, std::span<const PoseMat
 }
 
 /// Innovations and calibration come from the file, not from memory: only their envelope is kept.
-void add_filter_plots(Json& plots, const ReportInput& in) {
+void add_filter_plots(Json& plots, const ReportInput& in, const RunAxis& axis) {
   TrajectoryReader reader(in.trajectory_csv);
   const std::vector<std::string>& names = reader.calibration_names();
   SeriesEnvelope innovations(4, kBuckets);
@@ -215,7 +215,7 @@ void add_filter_plots(Json& plots, const ReportInput& in) {
   std::vector<double> row(calibration.channels());
   std::vector<std::pair<double, double>> bounds;  // by degrees of freedom
   for (StepRecord step; reader.next(step);) {
-    const double time = step.time - in.path.front().time;
+    const double time = axis.at(step.index, step.time);
     if (step.nis_dof > 0) {
       const auto dof = static_cast<std::size_t>(step.nis_dof);
       if (dof >= bounds.size()) bounds.resize(dof + 1, {0.0, 0.0});
@@ -267,11 +267,11 @@ void add_filter_plots(Json& plots, const ReportInput& in) {
        {"panels", panels}});
 }
 
-void add_step_times(Json& plots, const ReportInput& in) {
+void add_step_times(Json& plots, const ReportInput& in, const RunAxis& axis) {
   if (in.step_times.size() == 0) return;
   Json t = Json::array();
   for (std::size_t i = 0; i < in.step_times.size(); ++i)
-    t.push_back(short_number(in.step_times.abscissa(i) - in.path.front().time));
+    t.push_back(short_number(axis.at_step(static_cast<std::int64_t>(in.step_times.abscissa(i)))));
   Json times = panel("step time", "ms", in.step_times, 0);
   times["log"] = true;
   plots.push_back(
@@ -291,11 +291,16 @@ Json make_report_data(const ReportInput& in) {
   Json data;
   data["map"] = map_data(in, placement);
   data["plots"] = Json::array();
+  const RunAxis axis(in.path);
+  if (axis.is_time())
+    data["axis"] = {{"name", "time"}, {"unit", "s"}};
+  else
+    data["axis"] = {{"name", "step"}, {"unit", ""}};
   if (in.path.empty()) return data;
   if (placement)
-    add_error_plots(data["plots"], in, match_poses(in.path, in.truth.path), *placement);
-  add_filter_plots(data["plots"], in);
-  add_step_times(data["plots"], in);
+    add_error_plots(data["plots"], in, axis, match_poses(in.path, in.truth.path), *placement);
+  add_filter_plots(data["plots"], in, axis);
+  add_step_times(data["plots"], in, axis);
   return data;
 }
 

@@ -59,12 +59,11 @@ std::string path_card(const TruthComparison& truth) {
   const PathErrors& path = *truth.path;
   if (path.raw)
     card.row("ATE raw", path.raw->rmse_m, "m")
-        .row("ATE raw mean / max",
-             format(path.raw->mean_m, "m") + " / " + format(path.raw->max_m, "m"))
+        .row("mean / max", format(path.raw->mean_m, "m") + " / " + format(path.raw->max_m, "m"))
         .row("x / y", format(path.raw->rmse_x_m, "m") + " / " + format(path.raw->rmse_y_m, "m"));
   if (path.aligned)
     card.row("ATE aligned", path.aligned->rmse_m, "m")
-        .row("ATE aligned mean / max",
+        .row("mean / max",
              format(path.aligned->mean_m, "m") + " / " + format(path.aligned->max_m, "m"));
   if (path.heading)
     card.row("heading", path.heading->rmse_rad, "\u00b0", kDegrees)

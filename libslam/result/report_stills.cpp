@@ -76,24 +76,26 @@ std::string map_drawing(const Json& map) {
   if (!(x.high >= x.low) || !(y.high >= y.low)) return "";
   const double scale = std::min((kWidth - 20.0) / x.width(), 600.0 / y.width());
   const double height = y.width() * scale + 40.0;
-  const auto to_x = [&](double v) { return 10.0 + (v - x.low) * scale; };
+  const auto to_x = [&](double v) { return 0.5 * kWidth + (v - 0.5 * (x.low + x.high)) * scale; };
   const auto to_y = [&](double v) { return height - 30.0 - (v - y.low) * scale; };
   std::string svg = open_svg(height);
   svg += polyline(map["truth"]["x"], map["truth"]["y"], "truth-line", to_x, to_y);
   svg += polyline(map["path"]["x"], map["path"]["y"], "estimate-line", to_x, to_y);
-  for (const auto& [key, css_class] :
-       {std::pair{"true_landmarks", "truth-dot"}, {"landmarks", "estimate-dot"}})
+  const auto add_dots = [&](const char* key, const char* css_class, double radius) {
     for (const Json& point : map[key])
-      svg += std::string("<circle class=\"") + css_class + "\" r=\"3\" cx=\"" +
+      svg += std::string("<circle class=\"") + css_class + "\" r=\"" + number(radius) + "\" cx=\"" +
              number(to_x(point[0].get<double>())) + "\" cy=\"" +
              number(to_y(point[1].get<double>())) + "\"/>";
+  };
+  add_dots("true_landmarks", "truth-dot", 4.5);
+  add_dots("landmarks", "estimate-dot", 2.5);
   svg += corner_label(10.0, height - 8.0,
                       "x " + label(x.low) + " \u2026 " + label(x.high) + " m, y " + label(y.low) +
                           " \u2026 " + label(y.high) + " m; estimate blue, truth orange");
   return svg + "</svg>";
 }
 
-std::string panel_drawing(const Json& t, const Json& panel) {
+std::string panel_drawing(const Json& axis, const Json& t, const Json& panel) {
   constexpr double kHeight = 170.0, kLeft = 70.0;
   Interval x, y;
   x.add_all(t);
@@ -116,8 +118,11 @@ std::string panel_drawing(const Json& t, const Json& panel) {
                       panel["label"].get<std::string>() + (unit.empty() ? "" : " [" + unit + "]"));
   svg += corner_label(kLeft - 6.0, 28.0, label(y.high), "end");
   svg += corner_label(kLeft - 6.0, kHeight - 25.0, label(y.low), "end");
-  svg += corner_label(kLeft, kHeight - 6.0, label(x.low) + " s");
-  svg += corner_label(kWidth - 10.0, kHeight - 6.0, label(x.high) + " s", "end");
+  svg += corner_label(
+      kLeft, kHeight - 6.0,
+      axis["name"].get<std::string>() + " " + label(x.low) + " " + axis["unit"].get<std::string>());
+  svg += corner_label(kWidth - 10.0, kHeight - 6.0,
+                      label(x.high) + " " + axis["unit"].get<std::string>(), "end");
   return svg + "</svg>";
 }
 
@@ -129,7 +134,7 @@ std::string still_drawings_html(const Json& data) {
   for (const Json& plot : data["plots"]) {
     html += "<section class=\"plot\"><h2>" + escape_html(plot["title"].get<std::string>()) +
             "</h2><p class=\"good\">" + escape_html(plot["good"].get<std::string>()) + "</p>";
-    for (const Json& panel : plot["panels"]) html += panel_drawing(plot["t"], panel);
+    for (const Json& panel : plot["panels"]) html += panel_drawing(data["axis"], plot["t"], panel);
     html += "</section>\n";
   }
   return html;

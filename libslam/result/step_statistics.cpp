@@ -45,7 +45,7 @@ void StepStatistics::add(const StepRecord& step) {
   ms_.add(step.step_ms);
   ms_sum_ += step.step_ms;
   ms_max_ = std::max(ms_max_, step.step_ms);
-  step_times_.add(step.time, std::span(&step.step_ms, 1));
+  step_times_.add(static_cast<double>(step.index), std::span(&step.step_ms, 1));
   calibration_ = step.calibration;
 }
 

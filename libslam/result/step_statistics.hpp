@@ -38,7 +38,7 @@ class StepStatistics {
   /// health.
   void fill(RunSummary& summary) const;
 
-  /// Wall time per step [ms] over log time.
+  /// Wall time per step [ms] over the number of the step.
   const SeriesEnvelope& step_times() const { return step_times_; }
   /// Of the last step.
   const std::vector<CalibrationValue>& calibration() const { return calibration_; }

@@ -49,9 +49,9 @@ class TrajectoryReader {
 /// What the comparison with truth needs of a step.
 struct EstimatedPose {
   std::int64_t step = 0;
-  double time = 0.0;     ///< [s]
-  Eigen::Vector3d pose;  ///< x [m], y [m], phi [rad]
-  Eigen::Matrix3d cov;   ///< covariance of `pose`, additive
+  double time = 0.0;                               ///< [s]
+  Eigen::Vector3d pose = Eigen::Vector3d::Zero();  ///< x [m], y [m], phi [rad]
+  Eigen::Matrix3d cov = Eigen::Matrix3d::Zero();   ///< covariance of `pose`, additive
 };
 
 /// All rows of a trajectory.csv. Throws like TrajectoryReader.

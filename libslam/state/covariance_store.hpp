@@ -51,9 +51,11 @@ class CovarianceStore {
   virtual void project(std::span<const JacobianRows> rows, Eigen::Ref<Eigen::MatrixXd> out) const = 0;
   /// Kalman correction with S = L L^T the covariance of the innovation nu of the stacked rows:
   /// dx = P H^T S^-1 nu, P <- P - P H^T S^-1 H P. `lower` is L; nothing above its diagonal is read.
+  /// The coordinates in `considered` count with their uncertainty but do not learn: their dx is zero
+  /// and their covariance with each other stays (Schmidt-Kalman; Schmidt 1966).
   virtual void correct(std::span<const JacobianRows> rows,
                        const Eigen::Ref<const Eigen::MatrixXd>& lower, const VectorRef& innovation,
-                       Eigen::Ref<Eigen::VectorXd> dx) = 0;
+                       std::span<const Eigen::Index> considered, Eigen::Ref<Eigen::VectorXd> dx) = 0;
   /// P <- (I + U E^T) P (I + U E^T)^T, E the unit columns of [offset, offset + U.cols()): the change
   /// of chart of an error frame.
   virtual void transport(Eigen::Index offset, const Eigen::Ref<const Eigen::MatrixXd>& u) = 0;

@@ -1,5 +1,6 @@
 #include <libslam/state/dense_covariance.hpp>
 
+#include <algorithm>
 #include <libslam/state/symmetric_kernel.hpp>
 #include <stdexcept>
 #include <string>
@@ -148,7 +149,8 @@ void DenseCovariance::project(std::span<const JacobianRows> rows,
 
 void DenseCovariance::correct(std::span<const JacobianRows> rows,
                               const Eigen::Ref<const Eigen::MatrixXd>& lower,
-                              const VectorRef& innovation, Eigen::Ref<Eigen::VectorXd> dx) {
+                              const VectorRef& innovation, std::span<const Index> considered,
+                              Eigen::Ref<Eigen::VectorXd> dx) {
   const Index m = lower.rows();
   if (innovation.size() != m || dx.size() != n_)
     throw_dimension("correct", "innovation has length " + std::to_string(innovation.size()) +
@@ -175,7 +177,15 @@ void DenseCovariance::correct(std::span<const JacobianRows> rows,
     whitened_[k] = y / lower(k, k);
     dx += whitened_[k] * column.head(n_);
   }
+  kept_.clear();
+  for (const Index i : considered)
+    for (const Index j : considered) kept_.push_back(at(i, j));
   subtract_outer_product(p_.data(), p_.rows(), n_, gain_.data(), gain_.rows(), m);
+  auto kept = kept_.begin();
+  for (const Index i : considered) {
+    dx[i] = 0.0;
+    for (const Index j : considered) p_(std::max(i, j), std::min(i, j)) = *kept++;
+  }
 }
 
 void DenseCovariance::transport(Index offset, const Eigen::Ref<const Eigen::MatrixXd>& u) {

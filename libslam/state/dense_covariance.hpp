@@ -5,6 +5,7 @@
 #include <libslam/state/covariance_store.hpp>
 #include <memory>
 #include <span>
+#include <vector>
 
 namespace libslam {
 
@@ -23,7 +24,8 @@ class DenseCovariance final : public CovarianceStore {
   void remove(Eigen::Index offset, Eigen::Index size) override;
   void project(std::span<const JacobianRows> rows, Eigen::Ref<Eigen::MatrixXd> out) const override;
   void correct(std::span<const JacobianRows> rows, const Eigen::Ref<const Eigen::MatrixXd>& lower,
-               const VectorRef& innovation, Eigen::Ref<Eigen::VectorXd> dx) override;
+               const VectorRef& innovation, std::span<const Eigen::Index> considered,
+               Eigen::Ref<Eigen::VectorXd> dx) override;
   void transport(Eigen::Index offset, const Eigen::Ref<const Eigen::MatrixXd>& u) override;
   void marginal(Eigen::Index row, Eigen::Index col, Eigen::Ref<Eigen::MatrixXd> out) const override;
 
@@ -41,6 +43,7 @@ class DenseCovariance final : public CovarianceStore {
   Eigen::MatrixXd p_;     // capacity x capacity, lower triangle of the leading n_ x n_ part
   Eigen::MatrixXd gain_;  // workspace, padded for the kernel
   Eigen::VectorXd whitened_;
+  std::vector<double> kept_;  // covariance of the considered coordinates during a correction
   Eigen::Index n_ = 0;
 };
 

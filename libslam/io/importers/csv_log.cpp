@@ -1,5 +1,6 @@
 #include <cmath>
 #include <filesystem>
+
 #include <libslam/io/arc_motion.hpp>
 #include <libslam/io/importers/csv_log.hpp>
 #include <libslam/io/input_error.hpp>
@@ -29,8 +30,8 @@ void read_poses(TextReader& row, ImportedLog& log) {
     if (!first) {
       const double c = std::cos(last.z()), s = std::sin(last.z());
       const Eigen::Vector3d d = pose - last;
-      reading.arc = arc_of_increment({c * d.x() + s * d.y(), c * d.y() - s * d.x(),
-                                      std::remainder(d.z(), 2.0 * M_PI)});
+      reading.arc = arc_of_increment(
+          {c * d.x() + s * d.y(), c * d.y() - s * d.x(), std::remainder(d.z(), 2.0 * M_PI)});
     }
     last = pose;
   }
@@ -72,9 +73,12 @@ void read_ticks(TextReader& row, const CsvLogOptions& options, ImportedLog& log)
 void read_odometry(const CsvLogOptions& options, ImportedLog& log) {
   TextReader row(options.odometry);
   const std::string header = read_header(row);
-  if (header == "t,x,y,phi") read_poses(row, log);
-  else if (header == "t,v,omega") read_velocities(row, log);
-  else if (header == "t,left_ticks,right_ticks") read_ticks(row, options, log);
+  if (header == "t,x,y,phi")
+    read_poses(row, log);
+  else if (header == "t,v,omega")
+    read_velocities(row, log);
+  else if (header == "t,left_ticks,right_ticks")
+    read_ticks(row, options, log);
   else
     row.reject("expected the header t,x,y,phi or t,v,omega or t,left_ticks,right_ticks");
   if (log.odometry.empty()) throw InputError(options.odometry + ": holds no readings");

@@ -1,3 +1,7 @@
+#include <cmath>
+#include <filesystem>
+#include <stdexcept>
+
 #include <mrpt/io/CFileGZOutputStream.h>
 #include <mrpt/obs/CActionCollection.h>
 #include <mrpt/obs/CActionRobotMovement2D.h>
@@ -6,22 +10,21 @@
 #include <mrpt/obs/CSensoryFrame.h>
 #include <mrpt/poses/CPosePDFGaussian.h>
 #include <mrpt/serialization/CArchive.h>
+#include <nlohmann/json.hpp>
 
-#include <cmath>
-#include <filesystem>
 #include <libslam/io/arc_motion.hpp>
 #include <libslam/io/importers/imported_log.hpp>
 #include <libslam/map/csv_text.hpp>
 #include <libslam/result/atomic_file.hpp>
-#include <nlohmann/json.hpp>
-#include <stdexcept>
 
 namespace libslam {
 namespace {
 
 using mrpt::obs::CObservationBearingRange;
 
-mrpt::poses::CPose2D to_pose(const Eigen::Vector3d& p) { return {p.x(), p.y(), p.z()}; }
+mrpt::poses::CPose2D to_pose(const Eigen::Vector3d& p) {
+  return {p.x(), p.y(), p.z()};
+}
 
 CObservationBearingRange::TMeasurement to_measurement(const ImportedSighting& sighting) {
   CObservationBearingRange::TMeasurement m{};
@@ -74,7 +77,8 @@ class RawlogWriter {
       for (int j = 0; j < 3; ++j) cov(i, j) = (*reading.cov_increment)(i, j);
     motion.poseChange =
         mrpt::poses::CPosePDFGaussian::Create(motion.rawOdometryIncrementReading, cov);
-    // MRPT recomputes poseChange from its own motion model when it reads an action of method odometry.
+    // MRPT recomputes poseChange from its own motion model when it reads an action of method
+    // odometry.
     motion.estimationMethod = mrpt::obs::CActionRobotMovement2D::emScan2DMatching;
     fill_measured(reading, motion);
     mrpt::obs::CActionCollection actions;
@@ -111,7 +115,8 @@ class RawlogWriter {
 
   const ImportedLog& log_;
   mrpt::io::CFileGZOutputStream out_;
-  mrpt::serialization::CArchive::UniquePtr archive_ = mrpt::serialization::archiveUniquePtrFrom(out_);
+  mrpt::serialization::CArchive::UniquePtr archive_ =
+      mrpt::serialization::archiveUniquePtrFrom(out_);
   mrpt::poses::CPose2D pose_;
 };
 
@@ -124,8 +129,10 @@ bool write_rawlog(const ImportedLog& log, const std::string& file,
     if (interrupted && interrupted()) return false;
     for (; scan != log.scans.end() && scan->time < reading.time; ++scan)
       log.as_pairs ? writer.write_frame(*scan) : writer.write_scan(*scan);
-    if (!log.as_pairs) writer.write_odometry(reading);
-    else if (!first) writer.write_action(reading);
+    if (!log.as_pairs)
+      writer.write_odometry(reading);
+    else if (!first)
+      writer.write_action(reading);
     const bool seen = scan != log.scans.end() && scan->time == reading.time;
     if (log.as_pairs) writer.write_frame(seen ? *scan++ : ImportedScan{reading.time, {}});
     first = false;
@@ -184,7 +191,8 @@ void ImportedLog::add_sighting(const TextReader& row, double time, ImportedSight
   scans.back().sightings.push_back(std::move(sighting));
 }
 
-void ImportedLog::add_velocity(const TextReader& row, double time, const Eigen::Vector3d& velocity) {
+void ImportedLog::add_velocity(const TextReader& row, double time,
+                               const Eigen::Vector3d& velocity) {
   ImportedOdometry reading;
   reading.time = time;
   reading.dt = odometry.empty() ? 0.0 : time - odometry.back().time;

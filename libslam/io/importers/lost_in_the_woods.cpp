@@ -1,4 +1,5 @@
 #include <cmath>
+
 #include <libslam/io/importers/lost_in_the_woods.hpp>
 #include <libslam/io/input_error.hpp>
 #include <libslam/io/input_file.hpp>

@@ -1,4 +1,5 @@
 #include <algorithm>
+
 #include <libslam/io/importers/mrclam.hpp>
 #include <libslam/io/input_error.hpp>
 #include <libslam/io/input_file.hpp>
@@ -7,7 +8,8 @@ namespace libslam {
 namespace {
 
 constexpr std::int64_t kFirstLandmark = 6;
-constexpr double kTruthPeriod = 0.02;  // [s]; the robots move below 0.3 m/s: under 3 mm to the nearest row
+constexpr double kTruthPeriod =
+    0.02;  // [s]; the robots move below 0.3 m/s: under 3 mm to the nearest row
 
 /// Rows (t, v, omega) in the order of time: data set 9 begins with one row out of order.
 std::vector<Eigen::Vector3d> read_commands(TextReader& row) {
@@ -37,12 +39,15 @@ std::map<std::int64_t, std::int64_t> read_barcodes(const std::string& file) {
 
 void read_measurements(const std::string& directory, const std::string& prefix, ImportedLog& log) {
   const auto subjects = read_barcodes(find_input_file(directory, "Barcodes.dat"));
-  TextReader row(find_input_file(directory, prefix + "Measurement.dat"));  // t, barcode, range, bearing
+  TextReader row(
+      find_input_file(directory, prefix + "Measurement.dat"));  // t, barcode, range, bearing
   std::int64_t robots = 0, unknown = 0;
   while (row.next()) {
     const auto subject = subjects.find(row.integer(1));
-    if (subject == subjects.end()) ++unknown;
-    else if (subject->second < kFirstLandmark) ++robots;
+    if (subject == subjects.end())
+      ++unknown;
+    else if (subject->second < kFirstLandmark)
+      ++robots;
     else
       log.add_sighting(row, row.number(0), {subject->second, row.number(2), row.number(3), {}});
   }
@@ -72,13 +77,15 @@ ImportedLog import_mrclam(const std::string& directory, int robot) {
   log.scenario = "UTIAS MRCLAM, robot " + std::to_string(robot);
   read_odometry(find_input_file(directory, prefix + "Odometry.dat"), log);
   read_measurements(directory, prefix, log);
-  TextReader landmark(find_input_file(directory, "Landmark_Groundtruth.dat"));  // subject, x, y, sigmas
+  TextReader landmark(
+      find_input_file(directory, "Landmark_Groundtruth.dat"));  // subject, x, y, sigmas
   while (landmark.next())
     log.truth.landmarks.push_back(
         {landmark.integer(0), Eigen::Vector2d(landmark.number(1), landmark.number(2))});
   const std::string path = find_optional_input_file(directory, prefix + "Groundtruth.dat");
   if (!path.empty()) read_path(path, log);
-  log.remarks["path"] = path.empty() ? "not part of the data set" : "robot centre, from Vicon, 50 Hz";
+  log.remarks["path"] =
+      path.empty() ? "not part of the data set" : "robot centre, from Vicon, 50 Hz";
   return log;
 }
 

@@ -1,4 +1,5 @@
 #include <cmath>
+
 #include <libslam/io/importers/victoria_park.hpp>
 #include <libslam/io/input_file.hpp>
 
@@ -6,7 +7,8 @@ namespace libslam {
 namespace {
 
 // The vehicle, from the format note of the data set [m].
-constexpr double kWheelbase = 2.83, kEncoderOffset = 0.76, kLaserAhead = 0.95 + 2.83, kLaserLeft = 0.5;
+constexpr double kWheelbase = 2.83, kEncoderOffset = 0.76, kLaserAhead = 0.95 + 2.83,
+                 kLaserLeft = 0.5;
 constexpr double kMaxRange = 80.0;
 constexpr double kHalfPi = 1.5707963267948966;
 constexpr double kClockOrigin = 20967.0;  ///< [ms] of the aa3 clock at the zero of the ASCII clock
@@ -34,7 +36,8 @@ void read_trees(const std::string& directory, double max_diameter, ImportedLog& 
   TextReader row(find_input_file(directory + "/tree_detections", "measurements.dat"));
   while (row.next())  // t, range, bearing, diameter
     if (row.number(3) < max_diameter)
-      log.add_sighting(row, row.number(0), {kNoIdentity, row.number(1), row.number(2) - kHalfPi, {}});
+      log.add_sighting(row, row.number(0),
+                       {kNoIdentity, row.number(1), row.number(2) - kHalfPi, {}});
 }
 
 void read_identified_trees(const std::string& directory, ImportedLog& log) {
@@ -55,7 +58,8 @@ void read_gps(const std::string& directory, ImportedLog& log) {
     path.poses.emplace_back(row.number(2), row.number(1), 0.0);
   }
   log.remarks["path"] =
-      "good GPS fixes: x east, y north, positions only; the place of the antenna on the truck is not "
+      "good GPS fixes: x east, y north, positions only; the place of the antenna on the truck is "
+      "not "
       "documented";
 }
 
@@ -84,8 +88,10 @@ ImportedLog import_victoria_park(const std::string& directory, const VictoriaPar
   log.max_range = kMaxRange;
   describe(options, log);
   read_odometry(directory, options, log);
-  if (options.association == Association::kKnown) read_identified_trees(directory, log);
-  else read_trees(directory, options.max_diameter, log);
+  if (options.association == Association::kKnown)
+    read_identified_trees(directory, log);
+  else
+    read_trees(directory, options.max_diameter, log);
   read_gps(directory, log);
   return log;
 }

@@ -3,23 +3,26 @@
 //   LANDMARK i l x y         n11 n12 n22
 // Poses and landmarks share one numbering; a landmark row belongs to the pose before it.
 //
-// The n are the upper triangle of a covariance. Odometry has (1e-4, 4e-6, 4e-6) on its diagonal: as a
-// covariance 1 cm, 2 mm, 2 mrad for a step of half a metre; as information or its square root a
+// The n are the upper triangle of a covariance. Odometry has (1e-4, 4e-6, 4e-6) on its diagonal: as
+// a covariance 1 cm, 2 mm, 2 mrad for a step of half a metre; as information or its square root a
 // sigma of 100 m or more, which is absurd. GTSAM's reader takes odometry rows of this shape as a
-// covariance too. Landmarks have 0.4 m2, a sigma of 0.63 m; what poses close to each other see of one
-// landmark differs by .15 m, so the number is cautious, and 1.6 m (information) would be more so. (GTSAM
-// takes 0.4 as the variance of the range and a tenth as that of the bearing; here both follow from the
-// Cartesian covariance to first order.)
+// covariance too. Landmarks have 0.4 m2, a sigma of 0.63 m; what poses close to each other see of
+// one landmark differs by .15 m, so the number is cautious, and 1.6 m (information) would be more
+// so. (GTSAM takes 0.4 as the variance of the range and a tenth as that of the bearing; here both
+// follow from the Cartesian covariance to first order.)
+
+#include <cmath>
 
 #include <Eigen/LU>
-#include <cmath>
+
 #include <libslam/io/arc_motion.hpp>
 #include <libslam/io/importers/victoria_park.hpp>
 
 namespace libslam {
 namespace {
 
-constexpr double kPeriod = 0.2;  ///< [s] nominal: the file has no times, the laser gave 4.7 scans per second
+constexpr double kPeriod =
+    0.2;  ///< [s] nominal: the file has no times, the laser gave 4.7 scans per second
 
 void read_odometry_row(const TextReader& row, ImportedLog& log) {
   ImportedOdometry reading;
@@ -68,7 +71,8 @@ ImportedLog import_victoria_park_isam(const std::string& file) {
     } else if (row.word(0) == "LANDMARK") {
       read_landmark_row(row, log);
     } else {
-      row.reject("expected ODOMETRY or LANDMARK, found '" + std::string(row.word(0).substr(0, 40)) + "'");
+      row.reject("expected ODOMETRY or LANDMARK, found '" + std::string(row.word(0).substr(0, 40)) +
+                 "'");
     }
   }
   return log;

@@ -186,7 +186,8 @@
     area.append("rect").attr({ "class": "frame", width: width, height: height });
     area.append("text").attr({ transform: "translate(-62," + height / 2 + ") rotate(-90)", "text-anchor": "middle" })
       .text(panel.label + (panel.unit ? " [" + panel.unit + "]" : ""));
-    if (isLast) area.append("text").attr({ x: width / 2, y: height + 34, "text-anchor": "middle" }).text("time [s]");
+    if (isLast) area.append("text").attr({ x: width / 2, y: height + 34, "text-anchor": "middle" })
+      .text(data.axis.name + (data.axis.unit ? " [" + data.axis.unit + "]" : ""));
 
     var floor = 1e-300;
     function height_of(v) { return y(panel.log ? Math.max(v, floor) : v); }
@@ -198,7 +199,7 @@
     var indices = d3.range(t.length);
     var meanLine = d3.svg.line().defined(function (i) { return isValue(panel.mean[i]); })
       .x(function (i) { return x(t[i]); }).y(function (i) { return height_of(panel.mean[i]); });
-    var band = panel.band ? sheet.append("path").attr("class", "band-area") : null;
+    var band = panel.band ? sheet.append("path").attr("class", panel.mean ? "band-area is-cloud" : "band-area") : null;
     var interval = panel.interval ? sheet.append("rect").attr("class", "band-area") : null;
     var curve = sheet.append("path").attr("class", panel.mean ? "estimate-area is-cloud" : "estimate-area");
     var mean = panel.mean ? sheet.append("path").attr("class", "mean-line") : null;
@@ -233,7 +234,7 @@
         var i = Math.max(0, d3.bisectRight(t, x.invert(d3.mouse(area.node())[0])) - 1);
         cursor.style("display", null).attr({ x1: x(t[i]), x2: x(t[i]) });
         var low = panel.low[i], high = panel.high[i];
-        var text = "t " + number(t[i]) + " s\n" + panel.label + " " +
+        var text = data.axis.name + " " + number(t[i]) + " " + data.axis.unit + "\n" + panel.label + " " +
           (low === high ? number(low) : number(low) + " \u2026 " + number(high)) + (panel.unit === "1" ? "" : " " + panel.unit);
         if (panel.band) text += "\n" + panel.band.name + " " + number(panel.band.low[i]) + " \u2026 " + number(panel.band.high[i]);
         showReadout(text);
@@ -263,7 +264,7 @@
     var withLevel = plotData.panels.filter(function (p) { return p.level; })[0];
     if (withLevel) entries.push({ text: withLevel.level.name, colour: "level", shape: "key-dashed" });
     legend(plot, entries);
-    plot.append("button").text("Reset time").on("click", function () { zoomTime(timeExtent); });
+    plot.append("button").text("Whole run").on("click", function () { zoomTime(timeExtent); });
     plotData.panels.forEach(function (panel, i) {
       drawPanel(plot, plotData.t, panel, i === plotData.panels.length - 1, "clip-" + index + "-" + i);
     });

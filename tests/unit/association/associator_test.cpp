@@ -84,17 +84,29 @@ TEST(NearestNeighbour, TheZoneBetweenTheGatesIsDropped) {
   }
 }
 
-TEST(NearestNeighbour, TheLoserOfALandmarkIsAmbiguousNotNew) {
+TEST(NearestNeighbour, TheLoserOfALandmarkTakesItsSecondChoiceOrNone) {
   const auto registry = registry_of({0, 1});
   const auto features = features_with({kNoIdentity, kNoIdentity});
-  Table table({{1.0, 8.0}, {0.5, 100.0}});
+  std::vector<Verdict> verdicts;
+  Table second_choice(std::vector<std::vector<double>>{{7.0, 8.0}, {0.5, 100.0}});
+  // 2 ln 20 = 6.0: a clear winner; the loser's second choice is inside the gate, or it has none.
+  NearestNeighbour(9.0, 40.0).associate(features, registry, second_choice, verdicts);
+  EXPECT_EQ(verdicts[1].landmark, 0u);
+  EXPECT_EQ(verdicts[0].landmark, 1u);
+  Table clear(std::vector<std::vector<double>>{{7.0, 100.0}, {0.5, 100.0}});
+  NearestNeighbour(9.0, 40.0).associate(features, registry, clear, verdicts);
+  EXPECT_EQ(verdicts[1].outcome, Outcome::kPaired);
+  EXPECT_EQ(verdicts[0].outcome, Outcome::kAmbiguous);
+}
+
+TEST(NearestNeighbour, AnUndecidedContestUsesNeither) {
+  const auto registry = registry_of({0, 1});
+  const auto features = features_with({kNoIdentity, kNoIdentity});
+  Table table(std::vector<std::vector<double>>{{1.0, 100.0}, {0.5, 100.0}});
   std::vector<Verdict> verdicts;
   NearestNeighbour(9.0, 40.0).associate(features, registry, table, verdicts);
-  EXPECT_EQ(verdicts[1].landmark, 0u);
-  EXPECT_EQ(verdicts[0].landmark, 1u);  // its second choice is inside the gate
-  Table contested({{1.0, 100.0}, {0.5, 100.0}});
-  NearestNeighbour(9.0, 40.0).associate(features, registry, contested, verdicts);
   EXPECT_EQ(verdicts[0].outcome, Outcome::kAmbiguous);
+  EXPECT_EQ(verdicts[1].outcome, Outcome::kAmbiguous);
 }
 
 TEST(NearestNeighbour, RefusesGatesInTheWrongOrder) {

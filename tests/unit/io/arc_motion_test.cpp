@@ -1,7 +1,8 @@
+#include <cmath>
+
 #include <gtest/gtest.h>
 #include <mrpt/poses/CPose2D.h>
 
-#include <cmath>
 #include <libslam/io/arc_motion.hpp>
 
 namespace libslam {
@@ -9,7 +10,9 @@ namespace {
 
 using mrpt::poses::CPose2D;
 
-CPose2D pose(const Eigen::Vector3d& p) { return {p.x(), p.y(), p.z()}; }
+CPose2D pose(const Eigen::Vector3d& p) {
+  return {p.x(), p.y(), p.z()};
+}
 
 // Rounding of a handful of operations on numbers of order 1.
 constexpr double kRounding = 1e-13;
@@ -31,8 +34,8 @@ TEST_P(ArcMotion, PartsComposeToTheWhole) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Turns, ArcMotion,
-                         testing::Values(0.0, 1e-12, -1e-8, 9.9e-5, 1.01e-4, 2.1e-4, -0.3, 1.0, -2.0,
-                                         3.14159));
+                         testing::Values(0.0, 1e-12, -1e-8, 9.9e-5, 1.01e-4, 2.1e-4, -0.3, 1.0,
+                                         -2.0, 3.14159));
 
 TEST(ArcMotionCircle, QuarterTurnEndsOnTheCircle) {
   const Eigen::Vector3d end = increment_of_arc({M_PI / 2, 0.0, M_PI / 2});

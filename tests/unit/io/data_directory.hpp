@@ -7,7 +7,8 @@
 
 namespace libslam::test {
 
-/// `name` under $LIBSLAM_DATA, or under ../shared/data beside the checkout; empty if it is not there.
+/// `name` under $LIBSLAM_DATA, or under ../shared/data beside the checkout; empty if it is not
+/// there.
 inline std::string data_set(const std::string& name) {
   const char* configured = std::getenv("LIBSLAM_DATA");
   const std::filesystem::path root =

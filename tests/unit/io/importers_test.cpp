@@ -1,21 +1,14 @@
-#include <gtest/gtest.h>
-#include <mrpt/poses/CPose2D.h>
-
 #include <algorithm>
 #include <cmath>
-#include <libslam/io/arc_motion.hpp>
-#include <libslam/io/importers/csv_log.hpp>
-#include <libslam/io/importers/imported_log.hpp>
+#include <map>
+#include <set>
+
 #include <libslam/io/importers/lost_in_the_woods.hpp>
 #include <libslam/io/importers/mrclam.hpp>
 #include <libslam/io/importers/victoria_park.hpp>
-#include <libslam/io/input_error.hpp>
-#include <libslam/io/truth_reader.hpp>
-#include <set>
-#include <support/temporary_directory.hpp>
 
 #include "data_directory.hpp"
-#include "log_builder.hpp"
+#include "import_round_trip.hpp"
 
 namespace libslam {
 namespace {
@@ -24,65 +17,10 @@ using namespace libslam::test;
 using mrpt::obs::CObservationBearingRange;
 using mrpt::poses::CPose2D;
 
-CPose2D pose(const Eigen::Vector3d& p) { return {p.x(), p.y(), p.z()}; }
+using Importer = ImportTest;
 
-/// What a reader of the written rawlog sees.
-struct Played {
-  std::vector<LogStep> steps;
-  std::vector<double> times;  ///< of the dead-reckoned poses
-  std::vector<CPose2D> poses;
-  GroundTruth truth;
-  std::set<int> ids;
-  std::size_t sightings = 0;
-};
-
-class Importer : public testing::Test {
- protected:
-  std::string rawlog() const { return (directory_.path() / "x.rawlog").string(); }
-
-  /// Writes the log, reads it back, and composes its odometry from the first true pose.
-  Played round_trip(const ImportedLog& log) {
-    EXPECT_TRUE(write_imported_log(log, rawlog()));
-    RawlogPlayer player(rawlog(), with_policy("strict"));
-    Played out;
-    out.steps = play(player);
-    out.truth = read_truth(find_truth(rawlog()));
-    CPose2D at = out.truth.path.poses.empty() ? CPose2D() : pose(out.truth.path.poses.front());
-    for (const LogStep& step : out.steps) {
-      if (const auto motion = motion_of(step)) at = at + motion->rawOdometryIncrementReading;
-      out.times.push_back(step.time);
-      out.poses.push_back(at);
-      if (!step.frame) continue;
-      const auto seen = step.frame->getObservationByClass<CObservationBearingRange>();
-      out.sightings += seen->sensedData.size();
-      for (const auto& m : seen->sensedData) out.ids.insert(m.landmarkID);
-    }
-    return out;
-  }
-
-  /// Distance of the dead-reckoned poses to the nearest truth within `window` [s].
-  static std::vector<double> path_errors(const Played& played, double window) {
-    std::vector<double> errors;
-    const auto& truth = played.truth.path;
-    for (std::size_t i = 0; i < played.times.size(); ++i) {
-      const auto after = std::lower_bound(truth.times.begin(), truth.times.end(), played.times[i] - window);
-      if (after == truth.times.end() || *after > played.times[i] + window) continue;
-      const auto& t = truth.poses[static_cast<std::size_t>(after - truth.times.begin())];
-      errors.push_back(std::hypot(played.poses[i].x() - t.x(), played.poses[i].y() - t.y()));
-    }
-    return errors;
-  }
-
-  static double rms(const std::vector<double>& values) {
-    double sum = 0.0;
-    for (const double v : values) sum += v * v;
-    return std::sqrt(sum / static_cast<double>(values.size()));
-  }
-
-  TemporaryDirectory directory_;
-};
-
-/// Range and bearing residuals of all sightings at the true poses nearest in time (within `window`).
+/// Range and bearing residuals of all sightings at the true poses nearest in time (within
+/// `window`).
 struct Residuals {
   std::vector<double> range, bearing;
 };
@@ -108,7 +46,8 @@ Residuals residuals_at_truth(const ImportedLog& log, double window) {
 }
 
 double median(std::vector<double> values) {
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
+  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2),
+                   values.end());
   return values[values.size() / 2];
 }
 
@@ -146,7 +85,8 @@ TEST_F(Importer, LostInTheWoodsInputMovesToTheNextRow) {
   double used = 0.0, shifted = 0.0;
   for (std::size_t k = 0, i = 0; k + 2 < log.odometry.size(); ++k) {
     while (i + 1 < path.times.size() && path.times[i] < log.odometry[k].time - 0.01) ++i;
-    if (std::abs(path.times[i] - log.odometry[k].time) > 0.01 || path.times[i + 1] - path.times[i] > 0.11)
+    if (std::abs(path.times[i] - log.odometry[k].time) > 0.01 ||
+        path.times[i + 1] - path.times[i] > 0.11)
       continue;
     const double turn = std::remainder(path.poses[i + 1].z() - path.poses[i].z(), 2 * M_PI);
     used += std::pow(turn - log.odometry[k + 1].arc.z(), 2);
@@ -255,7 +195,8 @@ TEST_F(Importer, VictoriaParkIsamAsPairsWithCovariances) {
   const auto first = motion_of(played.steps[1]);
   EXPECT_NEAR(first->poseChange->getMeanVal().x(), 0.000985144, 1e-15);
   EXPECT_EQ(first->poseChange->getCovariance()(0, 0), 1e-4);
-  // First sighting: (11.5387, -3.2007) with 0.4 m2 in x and y, so 0.4 along the range and 0.4 / r2 across.
+  // First sighting: (11.5387, -3.2007) with 0.4 m2 in x and y, so 0.4 along the range and 0.4 / r2
+  // across.
   const auto seen = played.steps[4].frame->getObservationByClass<CObservationBearingRange>();
   ASSERT_EQ(seen->sensedData.size(), 1U);
   EXPECT_TRUE(seen->validCovariances);
@@ -264,101 +205,6 @@ TEST_F(Importer, VictoriaParkIsamAsPairsWithCovariances) {
   EXPECT_NEAR(seen->sensedData[0].yaw, std::atan2(-3.2007, 11.5387), 1e-7);
   EXPECT_NEAR(seen->sensedData[0].covariance(0, 0), 0.4, 1e-12);
   EXPECT_NEAR(seen->sensedData[0].covariance(1, 1), 0.4 / (range * range), 1e-12);
-}
-
-/// A short log of one's own: a circle driven at constant velocity.
-class CsvImporter : public Importer {
- protected:
-  CsvLogOptions options(const std::string& odometry, const std::string& landmarks) {
-    CsvLogOptions o;
-    o.odometry = directory_.write("odometry.csv", odometry).string();
-    o.landmarks = directory_.write("landmarks.csv", landmarks).string();
-    return o;
-  }
-  const std::string landmarks_ = "t,id,range,bearing\n0.5,7,2.0,0.1\n0.5,-1,3.0,-0.1\n1,7,1.9,0.2\n";
-};
-
-TEST_F(CsvImporter, AllFormsOfOdometryGiveTheSamePath) {
-  const double x = std::sin(0.2) * 5.0, y = (1.0 - std::cos(0.2)) * 5.0;
-  const std::string poses = "t,x,y,phi\n0,0,0,0\n1," + std::to_string(x) + "," + std::to_string(y) + ",0.2\n";
-  for (const std::string& text : {poses, std::string("t,v,omega\n0,9,9\n1,1,0.2\n"),
-                                  std::string("t,left_ticks,right_ticks\n0,100,200\n1,1050,1250\n")}) {
-    const Played played = round_trip(import_csv(options(text, landmarks_)));
-    ASSERT_EQ(played.sightings, 3U);
-    EXPECT_NEAR(played.poses.back().x(), x, 1e-6) << text;  // std::to_string gives 6 decimals
-    EXPECT_NEAR(played.poses.back().y(), y, 1e-6) << text;
-    EXPECT_NEAR(played.poses.back().phi(), 0.2, 1e-6) << text;
-    EXPECT_EQ(played.ids, (std::set<int>{-1, 7}));
-  }
-}
-
-TEST_F(CsvImporter, VelocityTimesIntervalIsTheIncrementAlsoWhenFalsified) {
-  ImportedLog log = import_csv(options("t,v,omega\n0,0,0\n1,1,0.2\n3,0.5,-0.4\n", landmarks_));
-  const auto honest = log.odometry;
-  distort_wheels(log, 1.04, 0.98, 0.5);
-  for (std::size_t i = 0; i < honest.size(); ++i) {
-    const auto left = [](const auto& o) { return o.arc.x() - 0.25 * o.arc.z(); };
-    const auto right = [](const auto& o) { return o.arc.x() + 0.25 * o.arc.z(); };
-    EXPECT_NEAR(left(log.odometry[i]), 1.04 * left(honest[i]), 1e-15);
-    EXPECT_NEAR(right(log.odometry[i]), 0.98 * right(honest[i]), 1e-15);
-  }
-  for (const LogStep& step : round_trip(log).steps) {
-    const auto motion = motion_of(step);
-    if (!motion) continue;
-    ASSERT_TRUE(motion->hasVelocities);
-    const Eigen::Vector3d arc(motion->velocityLocal.vx * step.dt, motion->velocityLocal.vy * step.dt,
-                              motion->velocityLocal.omega * step.dt);
-    const CPose2D& d = motion->rawOdometryIncrementReading;
-    EXPECT_LT((increment_of_arc(arc) - Eigen::Vector3d(d.x(), d.y(), d.phi())).norm(), 1e-12);
-  }
-}
-
-TEST_F(CsvImporter, SigmasBecomeCovariancesAndIdentitiesCanBeStripped) {
-  ImportedLog log = import_csv(options(
-      "t,v,omega\n0,0,0\n1,1,0\n",
-      "t,id,range,bearing,sigma_range,sigma_bearing\n0.5,7,2.0,0.1,0.2,0.05\n"));
-  strip_identities(log);
-  const Played played = round_trip(log);
-  EXPECT_EQ(played.ids, std::set<int>{-1});
-  for (const LogStep& step : played.steps) {
-    if (!step.frame) continue;
-    const auto seen = step.frame->getObservationByClass<CObservationBearingRange>();
-    EXPECT_TRUE(seen->validCovariances);
-    EXPECT_NEAR(seen->sensedData[0].covariance(0, 0), 0.04, 1e-15);
-    EXPECT_NEAR(seen->sensedData[0].covariance(1, 1), 0.0025, 1e-15);
-  }
-}
-
-TEST_F(CsvImporter, ErrorsNameFileAndLine) {
-  const std::string good = "t,v,omega\n0,0,0\n1,1,0\n";
-  const auto error_of = [&](const std::string& odometry, const std::string& landmarks) -> std::string {
-    try {
-      import_csv(options(odometry, landmarks));
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "accepted";
-  };
-  const auto o = (directory_.path() / "odometry.csv").string() + ":";
-  const auto l = (directory_.path() / "landmarks.csv").string() + ":";
-  EXPECT_EQ(error_of("t,v,omega\n1,0,0\n0,1,0\n", landmarks_), o + "3: time goes backwards");
-  EXPECT_EQ(error_of("t,v,omega\n1,0\n", landmarks_), o + "2: expected at least 3 columns, found 2");
-  EXPECT_EQ(error_of("time,v\n", landmarks_).rfind(o + "1: expected the header", 0), 0U);
-  EXPECT_EQ(error_of("t,v,omega\n1,inf,0\n", landmarks_).rfind(o + "2: ", 0), 0U);
-  EXPECT_EQ(error_of(good, "t,id,range,bearing\n0,1,-2,0\n"), l + "2: range must be positive");
-  EXPECT_EQ(error_of(good, "t,id,range,bearing\n0,9999999999,2,0\n"), l + "2: landmark id out of range");
-  EXPECT_EQ(error_of("t,left_ticks,right_ticks\n0,3000000000,1\n", landmarks_),
-            o + "2: encoder counter beyond 32 bits");
-}
-
-TEST_F(CsvImporter, InterruptedWritingLeavesAReadableLogAndOldTruthGoes) {
-  directory_.write("x.landmarks.csv", "id,x,y\n1,2,3\n");
-  int asked = 0;
-  EXPECT_FALSE(write_imported_log(import_csv(options("t,v,omega\n0,0,0\n1,1,0\n2,1,0\n", landmarks_)),
-                                  rawlog(), [&] { return ++asked == 3; }));
-  RawlogPlayer player(rawlog(), with_policy("strict"));
-  EXPECT_EQ(motion_of(play(player).back())->rawOdometryIncrementReading.x(), 0.5);
-  EXPECT_FALSE(std::filesystem::exists(directory_.path() / "x.landmarks.csv"));
 }
 
 }  // namespace

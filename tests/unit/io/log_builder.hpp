@@ -1,6 +1,10 @@
 #pragma once
 // Rawlogs made for a test, object by object.
 
+#include <filesystem>
+#include <string>
+#include <vector>
+
 #include <mrpt/io/CFileGZOutputStream.h>
 #include <mrpt/io/CFileOutputStream.h>
 #include <mrpt/obs/CActionCollection.h>
@@ -11,11 +15,8 @@
 #include <mrpt/poses/CPosePDFGaussian.h>
 #include <mrpt/serialization/CArchive.h>
 
-#include <filesystem>
 #include <libslam/data/log_step.hpp>
 #include <libslam/io/rawlog_player.hpp>
-#include <string>
-#include <vector>
 
 namespace libslam::test {
 
@@ -67,13 +68,16 @@ inline mrpt::obs::CActionCollection action(double time, double dx, double varian
 
 /// Writes objects to `file`, compressed or not.
 template <typename... Objects>
-std::string write_log(const std::filesystem::path& file, bool compressed, const Objects&... objects) {
+std::string write_log(const std::filesystem::path& file, bool compressed,
+                      const Objects&... objects) {
   const auto store = [&](auto stream) {
     auto archive = mrpt::serialization::archiveFrom(*stream);
     (void)(archive << ... << objects);
   };
-  if (compressed) store(std::make_unique<mrpt::io::CFileGZOutputStream>(file.string()));
-  else store(std::make_unique<mrpt::io::CFileOutputStream>(file.string()));
+  if (compressed)
+    store(std::make_unique<mrpt::io::CFileGZOutputStream>(file.string()));
+  else
+    store(std::make_unique<mrpt::io::CFileOutputStream>(file.string()));
   return file.string();
 }
 

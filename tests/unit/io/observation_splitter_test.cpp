@@ -1,10 +1,11 @@
+#include <cmath>
+#include <limits>
+
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
 #include <rapidcheck/gtest.h>
 
-#include <cmath>
 #include <libslam/io/observation_splitter.hpp>
-#include <limits>
 
 #include "log_builder.hpp"
 

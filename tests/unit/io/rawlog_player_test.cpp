@@ -1,12 +1,13 @@
-#include <gtest/gtest.h>
-
 #include <chrono>
 #include <cmath>
+#include <limits>
+#include <support/temporary_directory.hpp>
+
+#include <gtest/gtest.h>
+
 #include <libslam/io/input_error.hpp>
 #include <libslam/io/rawlog_player.hpp>
 #include <libslam/io/truth_reader.hpp>
-#include <limits>
-#include <support/temporary_directory.hpp>
 
 #include "log_builder.hpp"
 
@@ -28,8 +29,8 @@ class RawlogPlayerTest : public testing::Test {
 };
 
 TEST_F(RawlogPlayerTest, PairsWithLeadingFrameAndTrailingAction) {
-  RawlogPlayer player(log(frame(5.0), action(6.0, 0.1, 0.01), frame(6.0), action(7.5, 0.2), frame(7.5),
-                          action(8.0, 0.3)));
+  RawlogPlayer player(log(frame(5.0), action(6.0, 0.1, 0.01), frame(6.0), action(7.5, 0.2),
+                          frame(7.5), action(8.0, 0.3)));
   const auto steps = play(player);
   ASSERT_EQ(steps.size(), 4U);
   EXPECT_TRUE(player.is_pair_log());
@@ -95,7 +96,8 @@ TEST_F(RawlogPlayerTest, CompressedAndPlainGiveTheSame) {
   ASSERT_EQ(a.size(), b.size());
   for (std::size_t i = 0; i < a.size(); ++i) {
     EXPECT_EQ(a[i].time, b[i].time);
-    EXPECT_EQ(motion_of(a[i])->rawOdometryIncrementReading, motion_of(b[i])->rawOdometryIncrementReading);
+    EXPECT_EQ(motion_of(a[i])->rawOdometryIncrementReading,
+              motion_of(b[i])->rawOdometryIncrementReading);
   }
 }
 
@@ -107,11 +109,12 @@ TEST_F(RawlogPlayerTest, LabelsSelectSensors) {
   PlayerOptions options;
   options.input.odometry_label = "wheels";
   options.input.sensor_label = "laser";
-  RawlogPlayer player(log(odometry(1.0, 0.0, 0.0, 0.0), other, camera, sighting(1.8),
-                          odometry(2.0, 1.0, 0.0, 0.0)),
-                      options);
+  RawlogPlayer player(
+      log(odometry(1.0, 0.0, 0.0, 0.0), other, camera, sighting(1.8), odometry(2.0, 1.0, 0.0, 0.0)),
+      options);
   double moved = 0.0;
-  for (const LogStep& step : play(player)) moved += motion_of(step)->rawOdometryIncrementReading.x();
+  for (const LogStep& step : play(player))
+    moved += motion_of(step)->rawOdometryIncrementReading.x();
   EXPECT_NEAR(moved, 1.0, 1e-15);
   EXPECT_EQ(player.summary().observations, 1);
   EXPECT_EQ(player.summary().skipped, 0);
@@ -127,7 +130,8 @@ TEST_F(RawlogPlayerTest, NonFiniteOdometryIsBridgedByTheNextReading) {
   EXPECT_DOUBLE_EQ(steps[0].dt, 2.0);
   EXPECT_EQ(player.summary().skipped, 1);
   ASSERT_EQ(player.summary().warnings.size(), 1U);
-  EXPECT_NE(player.summary().warnings[0].find("entry 1: odometry is not finite"), std::string::npos);
+  EXPECT_NE(player.summary().warnings[0].find("entry 1: odometry is not finite"),
+            std::string::npos);
 }
 
 TEST_F(RawlogPlayerTest, LateObservationIsRejectedLeftOutOrMovedByPolicy) {
@@ -139,7 +143,8 @@ TEST_F(RawlogPlayerTest, LateObservationIsRejectedLeftOutOrMovedByPolicy) {
     play(strict);
     FAIL() << "strict accepted an observation from the past";
   } catch (const InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("log.rawlog: entry 4: observation is"), std::string::npos);
+    EXPECT_NE(std::string(error.what()).find("log.rawlog: entry 4: observation is"),
+              std::string::npos);
   }
   RawlogPlayer skip(file, with_policy("skip")), repair(file, with_policy("repair"));
   play(skip);
@@ -158,7 +163,8 @@ TEST_F(RawlogPlayerTest, OdometryBackInTimeLosesNoMotion) {
   for (const char* policy : {"skip", "repair"}) {
     RawlogPlayer player(file, with_policy(policy));
     double moved = 0.0;
-    for (const LogStep& step : play(player)) moved += motion_of(step)->rawOdometryIncrementReading.x();
+    for (const LogStep& step : play(player))
+      moved += motion_of(step)->rawOdometryIncrementReading.x();
     EXPECT_NEAR(moved, 3.0, 1e-14) << policy;
   }
 }
@@ -240,7 +246,10 @@ TEST(PackagedLogs, TruthRowOfASimulatedPairLogIsTheIndexOfItsStep) {
     double sum = 0.0;
     int count = 0;
     for (int k = 3; k < 247; ++k, ++count) {
-      const auto row = [&](int i) { return mrpt::poses::CPose2D(truth.poses[i].x(), truth.poses[i].y(), truth.poses[i].z()); };
+      const auto row = [&](int i) {
+        const Eigen::Vector3d& p = truth.poses[static_cast<std::size_t>(i)];
+        return mrpt::poses::CPose2D(p.x(), p.y(), p.z());
+      };
       const auto moved = row(k + shift) - row(k + shift - 1);
       const auto read = motion_of(steps[static_cast<std::size_t>(k)])->rawOdometryIncrementReading;
       sum += std::pow(moved.phi() - read.phi(), 2) + std::pow(moved.x() - read.x(), 2);
@@ -265,8 +274,10 @@ TEST(PackagedLogs, AllStockLogsPlay) {
       time = step.time;
     }
     EXPECT_FALSE(player.summary().incomplete()) << name;
-    if (count > 0) EXPECT_EQ(player.summary().entries, count) << name;
-    else EXPECT_GT(player.summary().entries, 10) << name;
+    if (count > 0)
+      EXPECT_EQ(player.summary().entries, count) << name;
+    else
+      EXPECT_GT(player.summary().entries, 10) << name;
   }
 }
 

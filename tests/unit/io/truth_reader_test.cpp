@@ -1,10 +1,11 @@
+#include <cmath>
+#include <support/temporary_directory.hpp>
+
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <libslam/io/input_error.hpp>
 #include <libslam/io/text_reader.hpp>
 #include <libslam/io/truth_reader.hpp>
-#include <support/temporary_directory.hpp>
 
 namespace libslam {
 namespace {
@@ -55,7 +56,8 @@ TEST_F(TruthReader, FilesBesideTheRawlogComeFirst) {
   EXPECT_TRUE(read_truth(find_truth(rawlog)).empty());
   directory_.write("a.truth.tum", "1 2 3 0 0 0 1 1\n");
   directory_.write("a.landmarks.csv", "id,x,y\n4,1.5,-2\n");
-  directory_.write("a.truth.json", R"({"has_heading": false, "calibration": {"scale_left": 0.96}})");
+  directory_.write("a.truth.json",
+                   R"({"has_heading": false, "calibration": {"scale_left": 0.96}})");
   const GroundTruth truth = read_truth(find_truth(rawlog));
   EXPECT_FALSE(truth.path.has_heading);
   EXPECT_EQ(truth.path.poses.at(0), Eigen::Vector3d(2, 3, 0));
@@ -69,7 +71,8 @@ TEST_F(TruthReader, ErrorsNameFileAndLine) {
   EXPECT_EQ(error_of(read_true_path, "1 0 0 0 0 0 0 1\n\n0.5 0 0 0 0 0 0 1\n"),
             name + ":3: time goes backwards");
   EXPECT_EQ(error_of(read_true_path, "1 0 0 0 0 0 0 0\n"), name + ":1: the quaternion is zero");
-  EXPECT_EQ(error_of(read_true_path, "1 0 0 0 0 0 nan 1\n").substr(0, name.size() + 3), name + ":1:");
+  EXPECT_EQ(error_of(read_true_path, "1 0 0 0 0 0 nan 1\n").substr(0, name.size() + 3),
+            name + ":1:");
   EXPECT_EQ(error_of(read_true_path, "1 2 3\n").substr(0, name.size() + 3), name + ":1:");
   EXPECT_EQ(error_of(read_true_path, "# nothing\n"), name + ": holds no poses");
   EXPECT_EQ(error_of(read_true_landmarks, "1,0,0\n1,2,2\n"), name + ":2: landmark 1 comes twice");
@@ -82,7 +85,8 @@ TEST_F(TruthReader, ErrorsNameFileAndLine) {
 
 TEST_F(TruthReader, TextRowsOfAnyLengthUpToTheLimit) {
   std::string text(70000, '1');
-  EXPECT_EQ(error_of(read_true_path, text).find("t.txt:1: line longer than") == std::string::npos, false);
+  EXPECT_EQ(error_of(read_true_path, text).find("t.txt:1: line longer than") == std::string::npos,
+            false);
   // Rows that cross the block of 64 KiB in which the file is read.
   text.clear();
   for (int i = 0; i < 5000; ++i) text += std::to_string(i) + " 0 0 0 0 0 0 1\r\n";

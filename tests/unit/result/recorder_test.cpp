@@ -128,5 +128,17 @@ TEST(Recorder, ChangingCalibrationParametersAreRefused) {
   EXPECT_THROW(recorder.record(step), std::invalid_argument);
 }
 
+TEST(Recorder, AStepThatIsNotFiniteIsRefusedAndTheRestStays) {
+  const sample::TemporaryFolder folder("recorder");
+  const sample::Run run = sample::make_run(3, 14);
+  Recorder recorder({folder.path() / "run"});
+  recorder.record(run.steps[0]);
+  StepRecord step = run.steps[1];
+  step.cov(1, 1) = std::nan("");
+  EXPECT_THROW(recorder.record(step), std::invalid_argument);
+  recorder.finish({}, run.map, run.truth, LandmarkIdentity::known);
+  EXPECT_EQ(read_estimated_path(folder.path() / "run" / "trajectory.csv").size(), 1u);
+}
+
 }  // namespace
 }  // namespace libslam

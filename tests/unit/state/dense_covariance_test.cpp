@@ -82,7 +82,30 @@ TEST_P(DenseCovarianceSizes, CorrectEqualsJosephForm) {
   const Eigen::MatrixXd i_kh = Eigen::MatrixXd::Identity(n, n) - k * h;
   const Eigen::MatrixXd joseph = i_kh * store.full * i_kh.transpose() + k * r * k.transpose();
   Eigen::VectorXd dx(n);
-  store.dense.correct(rows, s.llt().matrixL().toDenseMatrix(), nu, dx);
+  store.dense.correct(rows, s.llt().matrixL().toDenseMatrix(), nu, {}, dx);
+  EXPECT_LT(error(store.matrix(), joseph), kRounding * 10);
+  EXPECT_LT((dx - k * nu).cwiseAbs().maxCoeff(), kRounding * 10);
+}
+
+TEST_P(DenseCovarianceSizes, ConsideredCoordinatesDoNotLearn) {
+  std::mt19937_64 random(18);
+  const Eigen::Index n = GetParam();
+  Store store(random_covariance(n, random));
+  const std::vector<PlacedJacobian> columns = {{0, random_matrix(2, 3, random)}};
+  Eigen::MatrixXd h = Eigen::MatrixXd::Zero(2, n);
+  h.leftCols(3) = columns[0].jacobian;
+  const Eigen::MatrixXd r = random_covariance(2, random);
+  const Eigen::MatrixXd s = h * store.full * h.transpose() + r;
+  const std::vector<Eigen::Index> considered = {1, n - 1};
+  Eigen::MatrixXd k = store.full * h.transpose() * s.inverse();
+  for (const Eigen::Index i : considered) k.row(i).setZero();
+  // The Joseph form holds for any gain, also one with rows of zeros.
+  const Eigen::MatrixXd i_kh = Eigen::MatrixXd::Identity(n, n) - k * h;
+  const Eigen::MatrixXd joseph = i_kh * store.full * i_kh.transpose() + k * r * k.transpose();
+  const Eigen::VectorXd nu = random_matrix(2, 1, random);
+  Eigen::VectorXd dx(n);
+  store.dense.correct(std::vector<JacobianRows>{{0, 2, columns}}, s.llt().matrixL().toDenseMatrix(), nu,
+                      considered, dx);
   EXPECT_LT(error(store.matrix(), joseph), kRounding * 10);
   EXPECT_LT((dx - k * nu).cwiseAbs().maxCoeff(), kRounding * 10);
 }

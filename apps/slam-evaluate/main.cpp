@@ -1,0 +1,138 @@
+// slam-evaluate: compares finished runs with ground truth.
+
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include <libslam/config/version.hpp>
+#include <libslam/config/yaml_loader.hpp>
+#include <libslam/io/truth_reader.hpp>
+#include <libslam/map/landmark_map.hpp>
+#include <libslam/result/metrics.hpp>
+#include <libslam/result/run_summary.hpp>
+#include <libslam/result/trajectory.hpp>
+
+#include "table.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+using namespace libslam;
+using evaluate::EvaluatedRun;
+
+enum ExitCode { kDone = 0, kCommandLine = 2, kInput = 4, kIncomplete = 5 };
+
+struct Arguments {
+  std::vector<std::string> runs;
+  std::string truth, truth_map;
+  bool json = false, csv = false, quiet = false, verbose = false;
+};
+
+/// "a/b/" and "a/b" both give "b".
+std::string name_of(const fs::path& directory) {
+  const fs::path name =
+      directory.filename().empty() ? directory.parent_path().filename() : directory.filename();
+  return name.string();
+}
+
+TruthFiles truth_files_for(const RunSummary& summary, const Arguments& arguments) {
+  TruthFiles files;
+  if (summary.input.file) files = find_truth(*summary.input.file);
+  if (!arguments.truth.empty()) {
+    files.path = arguments.truth;
+    files.notes.clear();  // they belong to the path beside the log
+  }
+  if (!arguments.truth_map.empty()) files.landmarks = arguments.truth_map;
+  return files;
+}
+
+LandmarkIdentity identity_of(const fs::path& directory) {
+  const fs::path config = directory / "config.yaml";
+  const bool unknown =
+      fs::exists(config) && load_yaml(config).association.method == "nearest_neighbour";
+  return unknown ? LandmarkIdentity::unknown : LandmarkIdentity::known;
+}
+
+/// `warning` says what could not be compared.
+EvaluatedRun evaluate_run(const fs::path& directory, const Arguments& arguments,
+                          std::string& warning) {
+  EvaluatedRun run{name_of(directory), read_run_summary(directory / "run.json")};
+  const std::vector<EstimatedPose> path = read_estimated_path(directory / "trajectory.csv");
+  const LandmarkMap map = read_landmark_map(directory / "map.csv");
+  const GroundTruth truth = read_truth(truth_files_for(run.summary, arguments));
+  if (truth.empty()) {
+    warning = directory.string() + ": no ground truth beside the log; name it with --truth FILE";
+    if (run.summary.truth) warning += " (figures are those of the run itself)";
+    return run;
+  }
+  std::map<std::string, double> calibration;
+  for (const CalibrationValue& value : run.summary.result.calibration)
+    calibration[value.name] = value.mean;
+  run.summary.truth = compare_with_truth(path, map, calibration, truth, identity_of(directory));
+  if (!truth.path.poses.empty() && !run.summary.truth->path)
+    warning = directory.string() + ": no pose of the run is near a true one in time";
+  return run;
+}
+
+int run(const Arguments& arguments) {
+  std::vector<EvaluatedRun> runs;
+  bool complete = true;
+  for (const std::string& directory : arguments.runs) {
+    std::string warning;
+    try {
+      runs.push_back(evaluate_run(directory, arguments, warning));
+    } catch (const std::exception& error) {
+      warning = error.what();
+    }
+    if (warning.empty()) continue;
+    complete = false;
+    std::cerr << "slam-evaluate: " << warning << '\n';
+  }
+  if (runs.empty()) return kInput;
+  if (arguments.json)
+    std::cout << evaluate::to_json(runs);
+  else if (arguments.csv)
+    std::cout << evaluate::to_csv(runs, evaluate::figures_of(runs, true));
+  else if (!arguments.quiet)
+    std::cout << evaluate::to_table(runs, evaluate::figures_of(runs, arguments.verbose));
+  return complete ? kDone : kIncomplete;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Arguments arguments;
+  CLI::App app("Compares runs of slam-run with ground truth and prints a table.", "slam-evaluate");
+  app.add_option("RUN", arguments.runs, "Run directories")->required();
+  app.add_option(
+      "--truth", arguments.truth,
+      "True path (TUM, or the text form of MRPT); default: beside the rawlog of each run");
+  app.add_option("--truth-map", arguments.truth_map,
+                 "True landmarks (id,x,y[,z], or the text form of MRPT)");
+  auto* json = app.add_flag("--json", arguments.json, "Print JSON with the keys of run.json");
+  app.add_flag("--csv", arguments.csv, "Print CSV, one line per run")->excludes(json);
+  auto* quiet = app.add_flag("-q,--quiet", arguments.quiet,
+                             "Print no table; errors and the exit code remain");
+  app.add_flag("-v,--verbose", arguments.verbose, "Print all figures")->excludes(quiet);
+  app.set_version_flag("--version", "slam-evaluate " + std::string(version()) + " (" +
+                                        std::string(git_revision()) + ")");
+  app.footer(
+      "Example: slam-evaluate run1 run2 --truth robot.truth.tum\n"
+      "Exit codes: 0 done, 2 wrong command line, 4 no run could be read, 5 some figures are "
+      "missing.");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? kDone : kCommandLine;
+  }
+  try {
+    return run(arguments);
+  } catch (const std::exception& error) {
+    std::cerr << "slam-evaluate: " << error.what() << '\n';
+    return kInput;
+  }
+}

@@ -11,11 +11,12 @@ namespace libslam {
 ///
 /// `times` [s since 1970] is either empty, then poses belong to the steps of a log by order, or as
 /// long as `poses` and non-decreasing. `has_heading` is false for positions only (GPS); phi is then
-/// 0 and means nothing.
+/// 0 and means nothing, and the positions are those of `point_on_robot`.
 struct Trajectory {
   std::vector<double> times;
   std::vector<Eigen::Vector3d> poses;
   bool has_heading = true;
+  Eigen::Vector2d point_on_robot = Eigen::Vector2d::Zero();  ///< x forward, y left [m]
 };
 
 }  // namespace libslam

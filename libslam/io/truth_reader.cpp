@@ -1,3 +1,4 @@
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -91,6 +92,8 @@ TruthNotes read_truth_notes(const std::string& file) {
     const auto json = nlohmann::json::parse(in);
     if (!json.is_object()) throw InputError(file + ": is not a JSON object");
     notes.has_heading = json.value("has_heading", true);
+    const auto point = json.value("point_on_robot", std::array<double, 2>{0.0, 0.0});
+    notes.point_on_robot = {point[0], point[1]};
     const auto calibration = json.value("calibration", nlohmann::json::object());
     for (const auto& [name, value] : calibration.items())
       notes.calibration[name] = value.get<double>();
@@ -121,6 +124,7 @@ GroundTruth read_truth(const TruthFiles& files) {
   if (!files.notes.empty()) {
     TruthNotes notes = read_truth_notes(files.notes);
     truth.path.has_heading = notes.has_heading;
+    truth.path.point_on_robot = notes.point_on_robot;
     truth.calibration = std::move(notes.calibration);
     if (!notes.has_heading)
       for (auto& pose : truth.path.poses) pose.z() = 0.0;

@@ -176,9 +176,22 @@ std::optional<NeesSummary> summarize_nees(std::span<const EstimatedPose> estimat
   return summary;
 }
 
-TruthComparison compare_with_truth(std::span<const EstimatedPose> estimate, const LandmarkMap& map,
+namespace {
+
+/// The path of a point that is fixed on the robot.
+std::vector<EstimatedPose> path_of_point(std::span<const EstimatedPose> robot,
+                                         const Eigen::Vector2d& point) {
+  std::vector<EstimatedPose> moved(robot.begin(), robot.end());
+  for (auto& step : moved) step.pose.head<2>() += Eigen::Rotation2Dd(step.pose.z()) * point;
+  return moved;
+}
+
+}  // namespace
+
+TruthComparison compare_with_truth(std::span<const EstimatedPose> robot, const LandmarkMap& map,
                                    const std::map<std::string, double>& calibration,
                                    const GroundTruth& truth, LandmarkIdentity identity) {
+  const std::vector<EstimatedPose> estimate = path_of_point(robot, truth.path.point_on_robot);
   TruthComparison result;
   const std::vector<PoseMatch> matches = match_poses(estimate, truth.path);
   if (!matches.empty()) {

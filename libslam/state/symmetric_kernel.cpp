@@ -15,9 +15,17 @@ static_assert(kKernelTile == 2 * kLanes);
 
 }  // namespace
 
+// ThreadSanitizer instruments the resolver that target_clones generates, which runs before it is ready.
+#if defined(__SANITIZE_THREAD__)
+#define LIBSLAM_WIDEST_VECTORS
+#else
+#define LIBSLAM_WIDEST_VECTORS \
+  __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
+#endif
+
 // A tile of 16 rows and 4 columns is accumulated in registers (8 AVX-512 or 16 AVX2 accumulators)
 // over all m columns of W, then subtracted once: P is read and written exactly once.
-__attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default"))) void
+LIBSLAM_WIDEST_VECTORS void
 subtract_outer_product(double* p, std::ptrdiff_t p_stride, std::ptrdiff_t n, const double* w,
                        std::ptrdiff_t w_stride, std::ptrdiff_t m) {
   for (std::ptrdiff_t j0 = 0; j0 < n; j0 += kColumns) {

@@ -174,6 +174,8 @@ std::string notes_text(const ImportedLog& log) {
   nlohmann::json json;
   json["scenario"] = log.scenario;
   json["has_heading"] = log.truth.path.has_heading;
+  const auto& point = log.truth.path.point_on_robot;
+  if (!log.truth.path.has_heading) json["point_on_robot"] = {point.x(), point.y()};
   json["calibration"] = log.truth.calibration;
   json["parameters"] = log.parameters;
   json["remarks"] = log.remarks;

@@ -53,14 +53,14 @@ void read_gps(const std::string& directory, ImportedLog& log) {
   TextReader row(find_input_file(directory + "/raw_ascii", "GPS.txt"));  // t, north, east
   Trajectory& path = log.truth.path;
   path.has_heading = false;
+  path.point_on_robot = {kLaserAhead, kLaserLeft};
   while (row.next()) {
     path.times.push_back(row.number(0));
     path.poses.emplace_back(row.number(2), row.number(1), 0.0);
   }
   log.remarks["path"] =
       "good GPS fixes: x east, y north, positions only; the place of the antenna on the truck is "
-      "not "
-      "documented";
+      "not documented: compared with the laser's, as is usual";
 }
 
 void describe(const VictoriaParkOptions& options, ImportedLog& log) {

@@ -78,7 +78,7 @@ TEST(NearestNeighbour, TheZoneBetweenTheGatesIsDropped) {
       {8.9, Outcome::kPaired}, {9.1, Outcome::kAmbiguous}, {39.9, Outcome::kAmbiguous},
       {40.1, Outcome::kNew},   {1e9, Outcome::kNew}};
   for (const auto& [distance2, outcome] : cases) {
-    Table table({{distance2}});
+    Table table(std::vector<std::vector<double>>{{distance2}});
     nearest.associate(features, registry, table, verdicts);
     EXPECT_EQ(verdicts[0].outcome, outcome) << distance2;
   }

@@ -11,10 +11,7 @@
 #include <libslam/config/version.hpp>
 #include <libslam/config/yaml_loader.hpp>
 #include <libslam/io/truth_reader.hpp>
-#include <libslam/map/landmark_map.hpp>
-#include <libslam/result/metrics.hpp>
-#include <libslam/result/run_summary.hpp>
-#include <libslam/result/trajectory.hpp>
+#include <libslam/result/recorded_run.hpp>
 
 #include "table.hpp"
 
@@ -60,19 +57,15 @@ LandmarkIdentity identity_of(const fs::path& directory) {
 /// `warning` says what could not be compared.
 EvaluatedRun evaluate_run(const fs::path& directory, const Arguments& arguments,
                           std::string& warning) {
-  EvaluatedRun run{name_of(directory), read_run_summary(directory / "run.json")};
-  const std::vector<EstimatedPose> path = read_estimated_path(directory / "trajectory.csv");
-  const LandmarkMap map = read_landmark_map(directory / "map.csv");
+  const RecordedRun recorded = read_recorded_run(directory);
+  EvaluatedRun run{name_of(directory), recorded.summary};
   const GroundTruth truth = read_truth(truth_files_for(run.summary, arguments));
   if (truth.empty()) {
     warning = directory.string() + ": no ground truth beside the log; name it with --truth FILE";
     if (run.summary.truth) warning += " (figures are those of the run itself)";
     return run;
   }
-  std::map<std::string, double> calibration;
-  for (const CalibrationValue& value : run.summary.result.calibration)
-    calibration[value.name] = value.mean;
-  run.summary.truth = compare_with_truth(path, map, calibration, truth, identity_of(directory));
+  run.summary.truth = compare_with_truth(recorded, truth, identity_of(directory));
   if (!truth.path.poses.empty() && !run.summary.truth->path)
     warning = directory.string() + ": no pose of the run is near a true one in time";
   return run;

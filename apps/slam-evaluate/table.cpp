@@ -8,7 +8,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include <libslam/map/csv_text.hpp>
 #include <libslam/result/truth_json.hpp>
 
 namespace libslam::evaluate {
@@ -199,7 +198,7 @@ std::string to_csv(const std::vector<EvaluatedRun>& runs, const std::vector<Figu
     text += runs[i].name;
     for (const Figure& figure : figures) {
       text += ',';
-      if (figure.values[i]) append_number(text, *figure.values[i]);
+      if (figure.values[i]) text += nlohmann::json(*figure.values[i]).dump();
     }
     text += '\n';
   }

@@ -2,17 +2,20 @@
 
 #include <sys/resource.h>
 
+#include <Eigen/Eigenvalues>
 #include <chrono>
-#include <cmath>
 #include <exception>
 #include <libslam/config/digest.hpp>
 #include <libslam/config/version.hpp>
 #include <libslam/config/yaml_loader.hpp>
+#include <libslam/io/exporters/scene_3d.hpp>
+#include <libslam/io/exporters/simple_map.hpp>
 #include <libslam/io/input_error.hpp>
 #include <libslam/io/rawlog_player.hpp>
 #include <libslam/pipeline/pipeline.hpp>
 #include <libslam/result/atomic_file.hpp>
 #include <libslam/result/recorder.hpp>
+#include <libslam/result/trajectory.hpp>
 #include <utility>
 
 namespace libslam {
@@ -74,16 +77,33 @@ class Run {
   }
 
   RunSummary finish() {
-    const LandmarkMap map(pipeline_.filter().landmarks());
+    const LandmarkMap map = finite_landmarks();
     const bool known = request_.parameters.association.method != "nearest_neighbour";
     RunSummary summary = recorder_.finish(
         summarize(), map, request_.truth,
         known ? LandmarkIdentity::known : LandmarkIdentity::unknown);
+    if (request_.parameters.output.mrpt_files) write_mrpt_files(map);
     if (failure_) std::rethrow_exception(failure_);
     return summary;
   }
 
  private:
+  /// A diverged filter may hold landmarks that are no numbers; the others are still worth saving.
+  LandmarkMap finite_landmarks() const {
+    LandmarkMap map;
+    for (auto& landmark : pipeline_.filter().landmarks())
+      if (landmark.mean.allFinite() && landmark.cov.allFinite()) map.add(std::move(landmark));
+    return map;
+  }
+
+  void write_mrpt_files(const LandmarkMap& map) const {
+    std::vector<Eigen::Vector3d> path;
+    for (const auto& step : read_estimated_path(request_.directory / "trajectory.csv"))
+      path.push_back(step.pose);
+    write_scene_3d(request_.directory / "scene.3Dscene", path, map);
+    simple_map_.write(request_.directory / "map.simplemap");
+  }
+
   bool stopped() const { return request_.stop != nullptr && request_.stop->load(); }
 
   void end(int exit_code, const char* status) {
@@ -109,6 +129,7 @@ class Run {
       return;
     }
     recorder_.record(record);
+    if (request_.parameters.output.mrpt_files) simple_map_.add(record.pose, record.cov, step.frame);
     if (request_.on_step) request_.on_step(player_.progress(), record);
   }
 
@@ -137,6 +158,12 @@ class Run {
       warnings.push_back(std::to_string(pipeline_.frontend().unusable()) +
                          " measurements left out: not finite or range not positive");
     fill_timing(summary);
+    const Eigen::MatrixXd cov = pipeline_.filter().state().full_covariance();
+    if (cov.allFinite())
+      summary.health.min_eigenvalue =
+          Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(cov, Eigen::EigenvaluesOnly)
+              .eigenvalues()
+              .minCoeff();
     return summary;
   }
 
@@ -157,6 +184,7 @@ class Run {
   RawlogPlayer player_;
   Pipeline pipeline_;
   Recorder recorder_;
+  SimpleMapWriter simple_map_;
   std::exception_ptr failure_;
   std::vector<std::string> warnings_;
   std::int64_t unusable_steps_ = 0;

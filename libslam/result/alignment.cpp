@@ -94,6 +94,14 @@ Eigen::Vector2d transform_point(const TPose2D& T, const Eigen::Vector2d& point) 
   return transform_pose(T, {point.x(), point.y(), 0.0}).head<2>();
 }
 
+std::vector<EstimatedPose> path_of_point(std::span<const EstimatedPose> robot,
+                                         const Eigen::Vector2d& point) {
+  std::vector<EstimatedPose> moved(robot.begin(), robot.end());
+  for (EstimatedPose& step : moved)
+    step.pose.head<2>() += Eigen::Rotation2Dd(step.pose.z()) * point;
+  return moved;
+}
+
 TPose2D invert(const TPose2D& T) {
   return TPose2D(0, 0, 0) - T;
 }

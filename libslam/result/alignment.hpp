@@ -38,6 +38,11 @@ std::optional<mrpt::math::TPose2D> fit_rigid(const Eigen::Matrix2Xd& estimate,
 Eigen::Vector3d transform_pose(const mrpt::math::TPose2D& T, const Eigen::Vector3d& pose);
 Eigen::Vector2d transform_point(const mrpt::math::TPose2D& T, const Eigen::Vector2d& point);
 
+/// The path of a point fixed on the robot (x forward, y left [m]); headings and covariances stay
+/// the robot's.
+std::vector<EstimatedPose> path_of_point(std::span<const EstimatedPose> robot,
+                                         const Eigen::Vector2d& point);
+
 /// The inverse transformation.
 mrpt::math::TPose2D invert(const mrpt::math::TPose2D& T);
 

@@ -176,17 +176,11 @@ std::optional<NeesSummary> summarize_nees(std::span<const EstimatedPose> estimat
   return summary;
 }
 
-namespace {
-
-/// The path of a point that is fixed on the robot.
-std::vector<EstimatedPose> path_of_point(std::span<const EstimatedPose> robot,
-                                         const Eigen::Vector2d& point) {
-  std::vector<EstimatedPose> moved(robot.begin(), robot.end());
-  for (auto& step : moved) step.pose.head<2>() += Eigen::Rotation2Dd(step.pose.z()) * point;
-  return moved;
+std::map<std::string, double> calibration_means(const std::vector<CalibrationValue>& calibration) {
+  std::map<std::string, double> means;
+  for (const CalibrationValue& value : calibration) means[value.name] = value.mean;
+  return means;
 }
-
-}  // namespace
 
 TruthComparison compare_with_truth(std::span<const EstimatedPose> robot, const LandmarkMap& map,
                                    const std::map<std::string, double>& calibration,

@@ -11,11 +11,20 @@
 #include <mrpt/math/TPose2D.h>
 
 #include <libslam/data/ground_truth.hpp>
+#include <libslam/data/step_record.hpp>
 #include <libslam/map/landmark_map.hpp>
 #include <libslam/result/alignment.hpp>
 #include <libslam/result/trajectory.hpp>
 
 namespace libslam {
+
+struct PositionErrors {
+  double rmse_m = 0, mean_m = 0, max_m = 0, rmse_x_m = 0, rmse_y_m = 0;
+};
+
+struct HeadingErrors {
+  double rmse_rad = 0, max_rad = 0;
+};
 
 /// Absolute errors of a path, [m] and [rad].
 ///
@@ -23,12 +32,8 @@ namespace libslam {
 /// least squares over all matched positions, no scale. A raw placement needs a true heading; with
 /// positions only the raw figures are absent.
 struct PathErrors {
-  struct Position {
-    double rmse_m = 0, mean_m = 0, max_m = 0, rmse_x_m = 0, rmse_y_m = 0;
-  };
-  struct Heading {
-    double rmse_rad = 0, max_rad = 0;
-  };
+  using Position = PositionErrors;
+  using Heading = HeadingErrors;
   int poses = 0;  ///< matched poses
   std::optional<Position> raw, aligned;
   std::optional<Heading> heading;  ///< of the raw placement
@@ -102,6 +107,9 @@ std::optional<NeesSummary> summarize_nees(std::span<const EstimatedPose> estimat
 std::optional<MapErrors> compare_map(const LandmarkMap& map, const std::vector<TrueLandmark>& truth,
                                      LandmarkIdentity identity,
                                      const std::optional<mrpt::math::TPose2D>& placement, bool raw);
+
+/// Parameter name -> estimate.
+std::map<std::string, double> calibration_means(const std::vector<CalibrationValue>& calibration);
 
 /// All comparisons that the truth allows. `calibration` holds the final estimates.
 TruthComparison compare_with_truth(std::span<const EstimatedPose> estimate, const LandmarkMap& map,

@@ -56,12 +56,6 @@ void check_finite(const StepRecord& step) {
   if (!finite) throw std::invalid_argument("step " + std::to_string(step.index) + " is not finite");
 }
 
-std::map<std::string, double> means_of(const std::vector<CalibrationValue>& calibration) {
-  std::map<std::string, double> means;
-  for (const CalibrationValue& value : calibration) means[value.name] = value.mean;
-  return means;
-}
-
 }  // namespace
 
 Recorder::Recorder(RecorderOptions options) : options_(std::move(options)) {
@@ -123,8 +117,8 @@ RunSummary Recorder::finish(RunSummary summary, const LandmarkMap& map, const Gr
   const std::vector<EstimatedPose> path =
       read_estimated_path(options_.directory / "trajectory.csv");
   if (!truth.empty())
-    summary.truth =
-        compare_with_truth(path, map, means_of(summary.result.calibration), truth, identity);
+    summary.truth = compare_with_truth(path, map, calibration_means(summary.result.calibration),
+                                       truth, identity);
   replace_file(options_.directory / "run.json", to_json_text(summary));
   if (options_.report)
     replace_file(options_.directory / "report.html",

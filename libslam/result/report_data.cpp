@@ -1,8 +1,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <limits>
 #include <optional>
 
@@ -11,6 +9,7 @@
 
 #include <libslam/result/alignment.hpp>
 #include <libslam/result/report_data.hpp>
+#include <libslam/result/report_map_data.hpp>
 #include <libslam/result/run_axis.hpp>
 #include <libslam/state/chi_square.hpp>
 
@@ -21,90 +20,7 @@ using Json = nlohmann::ordered_json;
 using mrpt::math::TPose2D;
 
 constexpr std::size_t kBuckets = 1400;
-constexpr std::size_t kPathPoints = 5000;
-constexpr std::size_t kPoseEllipses = 60;
-constexpr std::size_t kLandmarks = 6000;
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-
-/// Six significant digits keep the page small and are finer than a pixel; null where not finite.
-Json short_number(double value) {
-  if (!std::isfinite(value)) return nullptr;
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return std::strtod(text, nullptr);
-}
-
-std::size_t stride_for(std::size_t count, std::size_t limit) {
-  return std::max<std::size_t>(1, (count + limit - 1) / limit);
-}
-
-/// Every stride-th index and the last one.
-template <typename Visit>
-void for_each_strided(std::size_t count, std::size_t limit, Visit visit) {
-  const std::size_t stride = stride_for(count, limit);
-  for (std::size_t i = 0; i < count; i += stride) visit(i);
-  if (count > 0 && (count - 1) % stride != 0) visit(count - 1);
-}
-
-Json polyline(std::size_t count, auto&& point_at) {
-  Json xs = Json::array(), ys = Json::array();
-  for_each_strided(count, kPathPoints, [&](std::size_t i) {
-    const Eigen::Vector2d p = point_at(i);
-    xs.push_back(short_number(p.x()));
-    ys.push_back(short_number(p.y()));
-  });
-  return {{"x", xs}, {"y", ys}};
-}
-
-/// [x, y, xx, xy, yy] after the placement.
-Json ellipse(const TPose2D& T, const Eigen::Vector2d& mean, const Eigen::Matrix2d& cov) {
-  const Eigen::Matrix2d R = Eigen::Rotation2Dd(T.phi).toRotationMatrix();
-  const Eigen::Matrix2d P = R * cov * R.transpose();
-  const Eigen::Vector2d p = transform_point(T, mean);
-  return {short_number(p.x()), short_number(p.y()), short_number(P(0, 0)), short_number(P(0, 1)),
-          short_number(P(1, 1))};
-}
-
-Json landmark_list(const LandmarkMap& map, const TPose2D& T) {
-  Json list = Json::array();
-  for_each_strided(map.size(), kLandmarks, [&](std::size_t i) {
-    const LandmarkEstimate& landmark = map.landmarks()[i];
-    if (landmark.type != "point" || landmark.mean.size() < 2) return;
-    Json entry = ellipse(T, landmark.mean.head<2>(), landmark.cov.topLeftCorner<2, 2>());
-    entry.push_back(landmark.id);
-    entry.push_back(landmark.times_seen);
-    list.push_back(entry);
-  });
-  return list;
-}
-
-/// Without a placement the frame of the truth is unknown and the truth stays out.
-Json map_data(const ReportInput& in, const std::optional<TPose2D>& placement) {
-  const TPose2D T = placement.value_or(TPose2D(0, 0, 0));
-  const GroundTruth truth = placement ? in.truth : GroundTruth();
-  Json data = {{"ellipse_scale", std::sqrt(chi_square_quantile(0.95, 2))}};
-  data["path"] = polyline(in.path.size(), [&](std::size_t i) -> Eigen::Vector2d {
-    return transform_point(T, in.path[i].pose.head<2>());
-  });
-  data["truth"] = polyline(truth.path.poses.size(), [&](std::size_t i) -> Eigen::Vector2d {
-    return truth.path.poses[i].head<2>();
-  });
-  data["truth_is_sparse"] = !truth.path.has_heading;
-  data["pose_ellipses"] = Json::array();
-  for_each_strided(in.path.size(), kPoseEllipses, [&](std::size_t i) {
-    data["pose_ellipses"].push_back(
-        ellipse(T, in.path[i].pose.head<2>(), in.path[i].cov.topLeftCorner<2, 2>()));
-  });
-  data["landmarks"] = landmark_list(in.map, T);
-  data["true_landmarks"] = Json::array();
-  for_each_strided(truth.landmarks.size(), kLandmarks, [&](std::size_t i) {
-    const TrueLandmark& landmark = truth.landmarks[i];
-    if (landmark.position.size() >= 2)
-      data["true_landmarks"].push_back(
-          {short_number(landmark.position.x()), short_number(landmark.position.y()), landmark.id});
-  });
-  return data;
-}
 
 Json abscissas(const SeriesEnvelope& series) {
   Json t = Json::array();
@@ -154,16 +70,17 @@ Json band(const char* name, const SeriesEnvelope& series, std::size_t low, std::
 }
 
 /// Errors in the filter's frame with their sigmas, and NEES, over the matched poses.
-void add_error_plots(Json& plots, const ReportInput& in, const RunAxis& axis,
-                     std::span<const PoseMatch> matches, const TPose2D& T_truth_filter) {
+void add_error_plots(Json& plots, const ReportInput& in, std::span<const EstimatedPose> path,
+                     const RunAxis& axis, std::span<const PoseMatch> matches,
+                     const TPose2D& T_truth_filter) {
   const bool heading = in.truth.path.has_heading;
   const TPose2D T_filter_truth = invert(T_truth_filter);
   const std::vector<double> nees =
-      heading ? pose_nees(in.path, in.truth.path, matches) : std::vector<double>();
+      heading ? pose_nees(path, in.truth.path, matches) : std::vector<double>();
   SeriesEnvelope errors(9, kBuckets), consistency(2, kBuckets);
   MovingMean mean_nees(matches.size());
   for (std::size_t i = 0; i < matches.size(); ++i) {
-    const EstimatedPose& estimate = in.path[matches[i].estimate];
+    const EstimatedPose& estimate = path[matches[i].estimate];
     Eigen::Vector3d e =
         estimate.pose - transform_pose(T_filter_truth, in.truth.path.poses[matches[i].truth]);
     e.z() = heading ? mrpt::math::wrapToPi(e.z()) : kNone;
@@ -289,7 +206,8 @@ Json make_report_data(const ReportInput& in) {
   std::optional<TPose2D> placement;
   if (in.summary.truth) placement = in.summary.truth->placement;
   Json data;
-  data["map"] = map_data(in, placement);
+  const std::vector<EstimatedPose> path = path_of_point(in.path, in.truth.path.point_on_robot);
+  data["map"] = make_map_data(in, path, placement);
   data["plots"] = Json::array();
   const RunAxis axis(in.path);
   if (axis.is_time())
@@ -298,7 +216,7 @@ Json make_report_data(const ReportInput& in) {
     data["axis"] = {{"name", "step"}, {"unit", ""}};
   if (in.path.empty()) return data;
   if (placement)
-    add_error_plots(data["plots"], in, axis, match_poses(in.path, in.truth.path), *placement);
+    add_error_plots(data["plots"], in, path, axis, match_poses(path, in.truth.path), *placement);
   add_filter_plots(data["plots"], in, axis);
   add_step_times(data["plots"], in, axis);
   return data;

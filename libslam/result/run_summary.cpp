@@ -160,7 +160,7 @@ RunSummary parse_run_summary(const std::string& text, const std::string& name) {
     visit_keys(reader, summary);
     if (object.contains("result")) summary.result = result_from_json(object["result"]);
     reader.section("timing", [&](const Reader& s) {
-      std::optional<RunSummary::StepTime> step_ms;
+      std::optional<StepTime> step_ms;
       if (object["timing"].contains("step_ms")) step_ms.emplace();
       visit_timing(s, summary.timing, step_ms);
       summary.timing.step_ms = step_ms;

@@ -14,6 +14,11 @@
 
 namespace libslam {
 
+/// Wall time of a step [ms].
+struct StepTime {
+  double mean = 0, p50 = 0, p95 = 0, max = 0;
+};
+
 /// The keys of run.json; what is absent here is absent there. SI units, radians, seconds.
 struct RunSummary {
   struct Input {
@@ -27,9 +32,6 @@ struct RunSummary {
     std::optional<Eigen::Vector3d> pose;  ///< last pose: x [m], y [m], phi [rad]
     std::int64_t landmarks = 0;
     std::vector<CalibrationValue> calibration;
-  };
-  struct StepTime {
-    double mean = 0, p50 = 0, p95 = 0, max = 0;  ///< [ms]
   };
   struct Timing {
     double wall_s = 0.0, cpu_s = 0.0;

@@ -3,6 +3,7 @@
 
 #include <Eigen/Dense>
 #include <mrpt/math/TPose2D.h>
+#include <mrpt/math/distributions.h>
 #include <mrpt/opengl/CEllipsoid2D.h>
 #include <mrpt/opengl/CEllipsoid3D.h>
 #include <mrpt/opengl/CGridPlaneXY.h>
@@ -12,7 +13,6 @@
 
 #include <libslam/io/exporters/scene_3d.hpp>
 #include <libslam/result/atomic_file.hpp>
-#include <libslam/state/chi_square.hpp>
 
 namespace libslam {
 namespace {
@@ -71,7 +71,9 @@ CRenderizable::Ptr make_ellipsoid(const Covariance& cov, int dimension) {
   for (int i = 0; i < dimension; ++i)
     for (int j = 0; j < dimension; ++j) matrix(i, j) = cov(i, j);
   ellipsoid->setCovMatrix(matrix);
-  ellipsoid->setQuantiles(static_cast<float>(std::sqrt(chi_square_quantile(0.95, dimension))));
+  // An approximation, within 1 % here: good enough for a drawing.
+  const double square = mrpt::math::chi2inv(0.95, static_cast<unsigned>(dimension));
+  ellipsoid->setQuantiles(static_cast<float>(std::sqrt(square)));
   return ellipsoid;
 }
 

@@ -86,5 +86,13 @@ TEST(Alignment, FitNeedsTwoPoints) {
   EXPECT_FALSE(fit_rigid(Eigen::Matrix2Xd(2, 1), Eigen::Matrix2Xd(2, 1)));
 }
 
+TEST(Alignment, APointOnTheRobotTurnsWithIt) {
+  auto path = estimates_at({0, 1});
+  path[1].pose = {2, 3, pi / 2};
+  const auto moved = path_of_point(path, {1.0, 0.5});
+  EXPECT_LT((moved[0].pose - Eigen::Vector3d(1, 0.5, 0)).norm(), 1e-12);
+  EXPECT_LT((moved[1].pose - Eigen::Vector3d(1.5, 4, pi / 2)).norm(), 1e-12);
+}
+
 }  // namespace
 }  // namespace libslam

@@ -23,7 +23,7 @@ RunSummary full_summary() {
   s.result.pose.emplace(1, 2, 0.1);
   s.result.landmarks = 17;
   s.result.calibration = {{"scale_left", 1.04, 0.001, 1, 0.1, true}};
-  s.timing = {3.5, 3.25, 50, RunSummary::StepTime{0.2, 0.1, 0.5, 3}, {{"predict", 0.5}}, 42.0, 3.5};
+  s.timing = {3.5, 3.25, 50, StepTime{0.2, 0.1, 0.5, 3}, {{"predict", 0.5}}, 42.0, 3.5};
   s.health.nis_mean = 1.1;
   s.health.nis_in_95 = 0.9;
   s.health.disturbances = 0;

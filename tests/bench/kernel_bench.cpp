@@ -1,0 +1,57 @@
+// The O(n^2) part of an update alone: P -= W W^T on the lower triangle, 20 columns (ten sightings).
+
+#include <benchmark/benchmark.h>
+
+#include <random>
+
+#include <Eigen/Dense>
+
+#include <libslam/state/symmetric_kernel.hpp>
+#include <support/random_matrix.hpp>
+
+namespace {
+
+using namespace libslam;
+
+constexpr Eigen::Index kRows = 20;
+
+struct Operands {
+  explicit Operands(Eigen::Index n) {
+    std::mt19937_64 random(81);
+    p = Eigen::MatrixXd::Identity(n, n);
+    w = Eigen::MatrixXd::Zero((n + kKernelTile - 1) / kKernelTile * kKernelTile, kRows);
+    // Small enough that P stays in the range of normal numbers over all repetitions.
+    w.topRows(n) = 1e-8 * libslam::testing::random_matrix(n, kRows, random);
+  }
+  Eigen::MatrixXd p, w;
+};
+
+void kernel_libslam(benchmark::State& state) {
+  const Eigen::Index n = state.range(0);
+  Operands x(n);
+  for (auto _ : state) {
+    subtract_outer_product(x.p.data(), n, n, x.w.data(), x.w.rows(), kRows);
+    benchmark::ClobberMemory();
+  }
+  state.counters["steps"] = 1;
+}
+
+void kernel_eigen(benchmark::State& state) {
+  const Eigen::Index n = state.range(0);
+  Operands x(n);
+  for (auto _ : state) {
+    x.p.selfadjointView<Eigen::Lower>().rankUpdate(x.w.topRows(n), -1.0);
+    benchmark::ClobberMemory();
+  }
+  state.counters["steps"] = 1;
+}
+
+void state_sizes(benchmark::internal::Benchmark* family) {
+  for (const int landmarks : {25, 50, 100, 200, 400, 800, 1600}) family->Arg(2 * landmarks + 3);
+  family->Unit(benchmark::kMillisecond);
+}
+
+BENCHMARK(kernel_libslam)->Name("kernel/libslam")->Apply(state_sizes);
+BENCHMARK(kernel_eigen)->Name("kernel/eigen")->Apply(state_sizes);
+
+}  // namespace

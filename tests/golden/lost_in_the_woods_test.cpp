@@ -1,0 +1,77 @@
+// UTIAS Lost in the Woods: real robot, 17 tubes, 341 m, identities removed.
+
+#include <libslam/io/importers/lost_in_the_woods.hpp>
+#include <tests/golden/log_run.hpp>
+
+using namespace libslam;
+using namespace libslam::test;
+
+namespace {
+
+const char* const kConfig = "lost_in_the_woods.yaml";
+const char* const kData = "utias_lost_in_the_woods";
+constexpr double kVirtualTrack = 0.5, kLeft = 1.04, kRight = 0.98;
+
+// Odometry noise of the published variances and less: 0.6 of their sigma instead of sqrt(10).
+const std::vector<std::string> kTrustedOdometry = {"motion.noise.along_per_sqrt_s=0.0126",
+                                                   "motion.noise.turn_per_sqrt_s=0.0172"};
+const std::vector<std::string> kUncalibrated = {"calibration.scale_left.enabled=false",
+                                                "calibration.scale_right.enabled=false"};
+
+ImportedLog log_without_identities(const std::string& directory) {
+  ImportedLog log = import_lost_in_the_woods(directory);
+  strip_identities(log);
+  return log;
+}
+
+}  // namespace
+
+TEST(LostInTheWoods, MapPathAndConsistencyWithoutIdentities) {
+  LIBSLAM_REQUIRE_DATA(directory, kData);
+  const TemporaryDirectory scratch;
+  const LogRun run = run_imported(kConfig, log_without_identities(directory), scratch.path() / "run");
+  EXPECT_EQ(run.map.size(), 17u);
+  const TruthComparison& truth = *run.summary.truth;
+  EXPECT_LE(*truth.map->rmse_aligned_m, 0.03);
+  EXPECT_LE(*truth.map->rmse_m, 0.05);
+  EXPECT_LE(truth.path->raw->rmse_m, 0.08);
+  for (const auto& quarter : truth.nees->quarter_mean) {
+    ASSERT_TRUE(quarter.has_value());
+    EXPECT_GE(*quarter, 2.0);
+    EXPECT_LE(*quarter, 5.0);
+  }
+}
+
+TEST(LostInTheWoods, TheStandardFrameIsThreeTimesWorseWithTheSameCalibration) {
+  LIBSLAM_REQUIRE_DATA(directory, kData);
+  const TemporaryDirectory scratch;
+  const ImportedLog log = log_without_identities(directory);
+  const LogRun invariant = run_imported(kConfig, log, scratch.path() / "invariant");
+  const LogRun standard =
+      run_imported(kConfig, log, scratch.path() / "standard", {"filter.error_frame=standard"});
+  EXPECT_GE(*standard.summary.truth->map->rmse_m, 3.0 * *invariant.summary.truth->map->rmse_m);
+}
+
+TEST(LostInTheWoods, AFalsifiedLogIsSeenThrough) {
+  LIBSLAM_REQUIRE_DATA(directory, kData);
+  const TemporaryDirectory scratch;
+  const ImportedLog honest = log_without_identities(directory);
+  ImportedLog falsified = honest;
+  distort_wheels(falsified, kLeft, kRight, kVirtualTrack);
+  const LogRun before = run_imported(kConfig, honest, scratch.path() / "honest");
+  const LogRun after = run_imported(kConfig, falsified, scratch.path() / "falsified");
+  EXPECT_NEAR(before.calibration("scale_left").mean / after.calibration("scale_left").mean, kLeft, 0.002);
+  EXPECT_NEAR(before.calibration("scale_right").mean / after.calibration("scale_right").mean, kRight,
+              0.002);
+  EXPECT_TRUE(after.calibration("scale_left").observable);
+
+  std::vector<std::string> settings = kTrustedOdometry;
+  const LogRun calibrated =
+      run_imported(kConfig, falsified, scratch.path() / "calibrated", settings);
+  settings.insert(settings.end(), kUncalibrated.begin(), kUncalibrated.end());
+  const LogRun uncalibrated =
+      run_imported(kConfig, falsified, scratch.path() / "uncalibrated", settings);
+  EXPECT_LE(calibrated.summary.truth->path->raw->rmse_m, 0.10);
+  EXPECT_EQ(calibrated.map.size(), 17u);
+  EXPECT_GT(uncalibrated.summary.truth->path->raw->rmse_m, 1.0);
+}

@@ -1,14 +1,19 @@
 // slam-run: a rawlog and a configuration in, path, map, uncertainty and report out.
 
-#include <unistd.h>
-
-#include <CLI/CLI.hpp>
 #include <atomic>
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <unistd.h>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
 #include <libslam/config/config_error.hpp>
 #include <libslam/config/help.hpp>
 #include <libslam/config/ini_loader.hpp>
@@ -18,10 +23,6 @@
 #include <libslam/io/input_error.hpp>
 #include <libslam/io/truth_reader.hpp>
 #include <libslam/pipeline/run.hpp>
-#include <optional>
-#include <sstream>
-#include <string>
-#include <vector>
 
 namespace {
 
@@ -60,7 +61,8 @@ class Console {
     const int percent = static_cast<int>(100.0 * fraction);
     if (quiet_ || !terminal_ || percent == shown_) return;
     shown_ = percent;
-    std::fprintf(stderr, "\r[%-40.*s] %3d %%", 40, std::string(percent * 2 / 5, '#').c_str(), percent);
+    std::fprintf(stderr, "\r[%-40.*s] %3d %%", 40, std::string(percent * 2 / 5, '#').c_str(),
+                 percent);
   }
   void clear_progress() {
     if (shown_ >= 0) std::fputs("\r\033[K", stderr);
@@ -77,7 +79,8 @@ class Console {
 fs::path fresh_directory(const std::string& rawlog) {
   const std::string stem = "run-" + fs::path(rawlog).stem().string() + "-";
   for (int i = 1;; ++i)
-    if (const fs::path candidate = stem + std::to_string(i); !fs::exists(candidate)) return candidate;
+    if (const fs::path candidate = stem + std::to_string(i); !fs::exists(candidate))
+      return candidate;
 }
 
 struct Job {
@@ -91,7 +94,8 @@ struct Job {
 Job load(Arguments& arguments) {
   Job job;
   const std::string extension = fs::path(arguments.config).extension();
-  if (arguments.rawlog.empty() && extension == ".rawlog") std::swap(arguments.rawlog, arguments.config);
+  if (arguments.rawlog.empty() && extension == ".rawlog")
+    std::swap(arguments.rawlog, arguments.config);
   if (extension == ".ini") {
     KfSlamIni ini = load_kf_slam_ini(arguments.config);
     job.parameters = ini.parameters;
@@ -122,7 +126,8 @@ std::string number(double value, const char* format = "%.4g") {
 void report(const RunSummary& summary, const fs::path& directory, Console& console) {
   const auto& timing = summary.timing;
   console.say(summary.status + ": " + std::to_string(timing.steps) + " steps, " +
-              std::to_string(summary.result.landmarks) + " landmarks, " + number(timing.wall_s) + " s");
+              std::to_string(summary.result.landmarks) + " landmarks, " + number(timing.wall_s) +
+              " s");
   for (const auto& parameter : summary.result.calibration)
     console.say("  " + parameter.name + " = " + number(parameter.mean, "%.5f") + " +- " +
                 number(parameter.sigma, "%.5f") +
@@ -130,11 +135,12 @@ void report(const RunSummary& summary, const fs::path& directory, Console& conso
   if (summary.truth && summary.truth->path) {
     const auto& path = *summary.truth->path;
     if (path.raw) console.say("  path error (RMSE): " + number(path.raw->rmse_m) + " m raw");
-    if (path.aligned) console.say("  path error (RMSE): " + number(path.aligned->rmse_m) + " m aligned");
+    if (path.aligned)
+      console.say("  path error (RMSE): " + number(path.aligned->rmse_m) + " m aligned");
   }
   if (summary.truth && summary.truth->map && summary.truth->map->rmse_aligned_m)
-    console.say("  map error (RMSE): " + number(*summary.truth->map->rmse_aligned_m) + " m aligned, " +
-                std::to_string(summary.truth->map->missed) + " missed, " +
+    console.say("  map error (RMSE): " + number(*summary.truth->map->rmse_aligned_m) +
+                " m aligned, " + std::to_string(summary.truth->map->missed) + " missed, " +
                 std::to_string(summary.truth->map->duplicates) + " duplicates");
   if (summary.truth && summary.truth->nees)
     console.say("  mean NEES of the pose: " + number(summary.truth->nees->mean) + " (ideal 3)");
@@ -150,8 +156,7 @@ int run(Arguments arguments) {
     std::cout << to_yaml(job.parameters);
     return kDone;
   }
-  if (arguments.rawlog.empty())
-    throw CLI::RequiredError("a rawlog (slam-run [CONFIG] RAWLOG)");
+  if (arguments.rawlog.empty()) throw CLI::RequiredError("a rawlog (slam-run [CONFIG] RAWLOG)");
   for (const auto& note : job.notes) console.warn("note: " + note);
 
   RunRequest request;
@@ -159,7 +164,8 @@ int run(Arguments arguments) {
   request.rawlog = arguments.rawlog;
   request.parameters = job.parameters;
   request.truth = read_truth(job.truth);
-  request.directory = arguments.out.empty() ? fresh_directory(arguments.rawlog) : fs::path(arguments.out);
+  request.directory =
+      arguments.out.empty() ? fresh_directory(arguments.rawlog) : fs::path(arguments.out);
   request.force = arguments.force;
   request.seed = arguments.seed;
   request.threads = arguments.threads;
@@ -174,35 +180,42 @@ int run(Arguments arguments) {
 }
 
 void add_options(CLI::App& app, Arguments& arguments) {
-  app.add_option("config", arguments.config,
-                 "Configuration: a .yaml file, or an ini file of MRPT's kf-slam; left out: the defaults");
+  app.add_option(
+      "config", arguments.config,
+      "Configuration: a .yaml file, or an ini file of MRPT's kf-slam; left out: the defaults");
   app.add_option("rawlog", arguments.rawlog, "The log to process");
   app.add_option("--out", arguments.out, "Run directory; default: a new one, run-LOG-N");
   app.add_flag("--force", arguments.force, "Replace the files of an earlier run in --out");
-  app.add_option("--set", arguments.settings, "section.key=value, repeatable")->allow_extra_args(false);
-  app.add_option("--truth", arguments.truth, "True path (TUM, or MRPT's text form); default: beside the rawlog");
+  app.add_option("--set", arguments.settings, "section.key=value, repeatable")
+      ->allow_extra_args(false);
+  app.add_option("--truth", arguments.truth,
+                 "True path (TUM, or MRPT's text form); default: beside the rawlog");
   app.add_option("--truth-map", arguments.truth_map, "True landmarks (id,x,y or MRPT's text form)");
   app.add_option("--input-policy", arguments.input_policy, "strict, skip or repair");
-  app.add_option("--speed", arguments.speed, "Play at this multiple of real time; default: as fast as possible")
+  app.add_option("--speed", arguments.speed,
+                 "Play at this multiple of real time; default: as fast as possible")
       ->check(CLI::PositiveNumber);
   app.add_option("--seed", arguments.seed, "Seed of random numbers; recorded in run.json");
   app.add_option("--threads", arguments.threads, "Most threads to use")->check(CLI::PositiveNumber);
-  app.add_flag("--print-config", arguments.print_config, "Print the effective configuration and stop");
-  app.add_option("--help-config", arguments.help_config, "Print every configuration key: text or markdown")
+  app.add_flag("--print-config", arguments.print_config,
+               "Print the effective configuration and stop");
+  app.add_option("--help-config", arguments.help_config,
+                 "Print every configuration key: text or markdown")
       ->expected(0, 1)
       ->default_str("text")
       ->check(CLI::IsMember({"text", "markdown"}));
   app.add_flag("-q,--quiet", arguments.quiet, "Print warnings and errors only");
   app.add_flag("-v,--verbose", arguments.verbose, "Print more");
-  app.set_version_flag("--version", "slam-run " + std::string(version()) + " (" +
-                                        std::string(git_revision()) + ")");
+  app.set_version_flag(
+      "--version", "slam-run " + std::string(version()) + " (" + std::string(git_revision()) + ")");
   app.footer("Example: slam-run config/range_bearing.yaml kf-slam_demo.rawlog --out run1");
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Runs SLAM over an MRPT rawlog: path, map, uncertainty, calibrated odometry, report.");
+  CLI::App app(
+      "Runs SLAM over an MRPT rawlog: path, map, uncertainty, calibrated odometry, report.");
   Arguments arguments;
   add_options(app, arguments);
   try {

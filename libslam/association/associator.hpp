@@ -5,11 +5,12 @@
 // Then    every feature gets one verdict, and no landmark is paired with two features.
 
 #include <cstddef>
-#include <libslam/association/landmark_registry.hpp>
-#include <libslam/data/feature.hpp>
 #include <optional>
 #include <span>
 #include <vector>
+
+#include <libslam/association/landmark_registry.hpp>
+#include <libslam/data/feature.hpp>
 
 namespace libslam {
 

@@ -1,6 +1,6 @@
-#include <libslam/association/known.hpp>
-
 #include <algorithm>
+
+#include <libslam/association/known.hpp>
 
 namespace libslam {
 

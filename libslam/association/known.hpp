@@ -1,15 +1,17 @@
 #pragma once
 // Association by the identities of the log, with another method for features that have none.
 
-#include <libslam/association/associator.hpp>
 #include <memory>
 #include <vector>
+
+#include <libslam/association/associator.hpp>
 
 namespace libslam {
 
 /// A feature whose identity is in the map is paired if it passes the gate; an unknown identity is a
-/// new landmark; a second feature with the same identity is ambiguous. Features without identity go to
-/// `unidentified`, which may not take landmarks that are paired already; without it they are ambiguous.
+/// new landmark; a second feature with the same identity is ambiguous. Features without identity go
+/// to `unidentified`, which may not take landmarks that are paired already; without it they are
+/// ambiguous.
 class KnownAssociation final : public Associator {
  public:
   /// `gate`: largest accepted squared Mahalanobis distance; infinity accepts all.

@@ -2,12 +2,13 @@
 // Which landmarks the map holds: identity, block, how often seen, provisional or confirmed.
 
 #include <cstdint>
-#include <libslam/data/feature.hpp>
-#include <libslam/state/block.hpp>
 #include <map>
 #include <optional>
 #include <span>
 #include <vector>
+
+#include <libslam/data/feature.hpp>
+#include <libslam/state/block.hpp>
 
 namespace libslam {
 

@@ -1,9 +1,9 @@
-#include <libslam/association/nearest_neighbour.hpp>
-
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <tuple>
+
+#include <libslam/association/nearest_neighbour.hpp>
 
 namespace libslam {
 
@@ -24,7 +24,8 @@ void NearestNeighbour::associate(std::span<const Feature> features,
       const auto match = compatibility.test(i, k, new_landmark_gate_);
       if (!match || match->mahalanobis2 > new_landmark_gate_) continue;
       verdicts[i].outcome = Outcome::kAmbiguous;
-      if (match->mahalanobis2 <= gate_) pairs_.push_back({match->mahalanobis2 + match->log_det, i, k});
+      if (match->mahalanobis2 <= gate_)
+        pairs_.push_back({match->mahalanobis2 + match->log_det, i, k});
     }
   std::sort(pairs_.begin(), pairs_.end(), [](const Pair& a, const Pair& b) {
     return std::tie(a.cost, a.feature, a.landmark) < std::tie(b.cost, b.feature, b.landmark);

@@ -1,8 +1,9 @@
 #pragma once
 // One feature as a front-end delivers it: a measurement that a model can predict.
 
-#include <Eigen/Core>
 #include <cstdint>
+
+#include <Eigen/Core>
 
 namespace libslam {
 
@@ -10,9 +11,8 @@ namespace libslam {
 inline constexpr int kMaxMeasurementDimension = 4;
 
 using MeasurementVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxMeasurementDimension, 1>;
-using MeasurementMatrix =
-    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxMeasurementDimension,
-                  kMaxMeasurementDimension>;
+using MeasurementMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0,
+                                        kMaxMeasurementDimension, kMaxMeasurementDimension>;
 
 /// The identity that a sensor gives when it gives none.
 inline constexpr std::int64_t kNoIdentity = -1;

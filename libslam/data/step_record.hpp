@@ -1,18 +1,19 @@
 #pragma once
 // What one step of a run leaves behind for the recorder.
 
-#include <Eigen/Core>
 #include <cstdint>
 #include <string>
 #include <vector>
+
+#include <Eigen/Core>
 
 namespace libslam {
 
 /// A calibration parameter that is a block of the state.
 struct CalibrationValue {
-  std::string name;       ///< e.g. "scale_left"
-  double mean = 0.0;      ///< in the unit of the parameter
-  double sigma = 0.0;     ///< standard deviation of `mean`
+  std::string name;    ///< e.g. "scale_left"
+  double mean = 0.0;   ///< in the unit of the parameter
+  double sigma = 0.0;  ///< standard deviation of `mean`
   double prior_mean = 0.0;
   double prior_sigma = 0.0;
   bool observable = false;  ///< the data excited it and sigma fell below half of its prior
@@ -20,10 +21,10 @@ struct CalibrationValue {
 
 /// A landmark of the estimated map.
 struct LandmarkEstimate {
-  std::int64_t id = 0;              ///< identity from the log, else a running number
-  std::string type = "point";       ///< kind of landmark
-  Eigen::VectorXd mean;             ///< world coordinates
-  Eigen::MatrixXd cov;              ///< covariance of `mean`
+  std::int64_t id = 0;         ///< identity from the log, else a running number
+  std::string type = "point";  ///< kind of landmark
+  Eigen::VectorXd mean;        ///< world coordinates
+  Eigen::MatrixXd cov;         ///< covariance of `mean`
   int times_seen = 0;
 };
 

@@ -1,11 +1,12 @@
-#include <libslam/filter/ekf.hpp>
-
-#include <Eigen/Cholesky>
 #include <array>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
 #include <string>
+
+#include <Eigen/Cholesky>
+
+#include <libslam/filter/ekf.hpp>
 
 namespace libslam {
 
@@ -13,12 +14,12 @@ namespace {
 
 using Eigen::Index;
 
-[[noreturn]] void throw_shape(const GaussianState& state, BlockId block, const BlockMatrix& jacobian,
-                              Index rows) {
-  throw std::invalid_argument(
-      "Jacobian with respect to block '" + state.spec(block).name + "' is " +
-      std::to_string(jacobian.rows()) + " x " + std::to_string(jacobian.cols()) + ", expected " +
-      std::to_string(rows) + " x " + std::to_string(state.size(block)));
+[[noreturn]] void throw_shape(const GaussianState& state, BlockId block,
+                              const BlockMatrix& jacobian, Index rows) {
+  throw std::invalid_argument("Jacobian with respect to block '" + state.spec(block).name +
+                              "' is " + std::to_string(jacobian.rows()) + " x " +
+                              std::to_string(jacobian.cols()) + ", expected " +
+                              std::to_string(rows) + " x " + std::to_string(state.size(block)));
 }
 
 PlacedJacobian place(const GaussianState& state, const BlockJacobian& column, Index rows) {

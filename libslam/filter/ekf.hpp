@@ -5,16 +5,19 @@
 //   innovate    S = H P H^T + R,  d^2 = nu^T S^-1 nu                (given nu, H, R)
 //   correct     delta = P H^T S^-1 nu,  P <- P - P H^T S^-1 H P,  retraction by the error frame
 //
-// Symbols: libslam/README.md. S is factored by Cholesky; no matrix is inverted; P stays symmetric by
-// construction. In steady state (no growth of state or observation count) a step does not allocate.
+// Symbols: libslam/README.md. S is factored by Cholesky; no matrix is inverted; P stays symmetric
+// by construction. In steady state (no growth of state or observation count) a step does not
+// allocate.
 
-#include <Eigen/Core>
-#include <libslam/state/error_frame.hpp>
-#include <libslam/state/gaussian_state.hpp>
-#include <libslam/state/linearization.hpp>
 #include <memory>
 #include <span>
 #include <vector>
+
+#include <Eigen/Core>
+
+#include <libslam/state/error_frame.hpp>
+#include <libslam/state/gaussian_state.hpp>
+#include <libslam/state/linearization.hpp>
 
 namespace libslam {
 
@@ -54,7 +57,8 @@ class Ekf {
 
  private:
   /// Stacks rows_, s_ = H P H^T + R and nu_; returns the number of rows.
-  Eigen::Index stack(const GaussianState& state, std::span<const LinearizedMeasurement> measurements);
+  Eigen::Index stack(const GaussianState& state,
+                     std::span<const LinearizedMeasurement> measurements);
   /// Cholesky factor of the leading m x m part of s_ in place; false if not positive definite.
   bool factorize(Eigen::Index m);
   /// nu^T S^-1 nu from the factor in s_.

@@ -1,10 +1,11 @@
-#include <libslam/filter/ekf_slam.hpp>
-
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <string>
+
+#include <Eigen/Geometry>
+
+#include <libslam/filter/ekf_slam.hpp>
 
 namespace libslam {
 
@@ -56,8 +57,8 @@ class EkfSlam::PairTest final : public Compatibility {
   }
 
  private:
-  // In landmark space e = l_feature - l_map has covariance C <= 2 (C_feature + C_map), whatever their
-  // correlation, and e^T C^-1 e >= |e|^2 / trace(C).
+  // In landmark space e = l_feature - l_map has covariance C <= 2 (C_feature + C_map), whatever
+  // their correlation, and e^T C^-1 e >= |e|^2 / trace(C).
   bool far_apart(std::size_t feature, BlockId landmark, double limit) {
     const GaussianState& state = filter_.state_;
     if (feature != prepared_) {

@@ -1,7 +1,13 @@
 #pragma once
-// The five-line step: EKF-SLAM as a composition of motion, measurement, association and error frame.
+// The five-line step: EKF-SLAM as a composition of motion, measurement, association and error
+// frame.
+
+#include <memory>
+#include <span>
+#include <vector>
 
 #include <Eigen/Core>
+
 #include <libslam/association/associator.hpp>
 #include <libslam/association/landmark_registry.hpp>
 #include <libslam/data/motion_action.hpp>
@@ -11,9 +17,6 @@
 #include <libslam/measurement/measurement_model.hpp>
 #include <libslam/motion/motion_model.hpp>
 #include <libslam/policy/excitation.hpp>
-#include <memory>
-#include <span>
-#include <vector>
 
 namespace libslam {
 

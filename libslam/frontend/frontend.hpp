@@ -3,14 +3,15 @@
 //
 // Given   a sensory frame of the log,
 // Then    `extract` returns one batch of features per usable observation, in the order of the log;
-//         unusable measurements (not finite, range not positive, noise not positive) are left out and
-//         counted, never thrown.
+//         unusable measurements (not finite, range not positive, noise not positive) are left out
+//         and counted, never thrown.
+
+#include <cstdint>
+#include <vector>
 
 #include <mrpt/obs/CSensoryFrame.h>
 
-#include <cstdint>
 #include <libslam/data/feature.hpp>
-#include <vector>
 
 namespace libslam {
 
@@ -21,7 +22,8 @@ class Frontend {
  public:
   virtual ~Frontend() = default;
   /// Overwrites `batches`.
-  virtual void extract(const mrpt::obs::CSensoryFrame& frame, std::vector<FeatureBatch>& batches) = 0;
+  virtual void extract(const mrpt::obs::CSensoryFrame& frame,
+                       std::vector<FeatureBatch>& batches) = 0;
   /// Measurements left out so far because they were unusable.
   virtual std::int64_t unusable() const = 0;
 };

@@ -1,9 +1,9 @@
-#include <libslam/frontend/range_bearing_observation.hpp>
-
-#include <mrpt/obs/CObservationBearingRange.h>
+#include <cmath>
 
 #include <Eigen/Dense>
-#include <cmath>
+#include <mrpt/obs/CObservationBearingRange.h>
+
+#include <libslam/frontend/range_bearing_observation.hpp>
 
 namespace libslam {
 
@@ -20,7 +20,8 @@ bool usable(const Eigen::Matrix2d& cov) {
   return cov.allFinite() && cov(0, 0) > 0.0 && cov.determinant() > 0.0;
 }
 
-MeasurementMatrix noise_of(const Observation& observation, const Observation::TMeasurement& measured,
+MeasurementMatrix noise_of(const Observation& observation,
+                           const Observation::TMeasurement& measured,
                            const MeasurementMatrix& configured) {
   if (observation.validCovariances) {
     const Eigen::Matrix2d cov = measured.covariance.asEigen().topLeftCorner<2, 2>();

@@ -2,17 +2,18 @@
 // CObservationBearingRange -> range-bearing features.
 
 #include <cstdint>
-#include <libslam/config/parameters.hpp>
-#include <libslam/frontend/frontend.hpp>
 #include <string>
 #include <vector>
 
+#include <libslam/config/parameters.hpp>
+#include <libslam/frontend/frontend.hpp>
+
 namespace libslam {
 
-/// Noise of a feature: covariance of the observation where the log has one (validCovariances), else the
-/// sensor sigmas of the log where positive, else the configured sigmas; `measurement.noise: configured`
-/// takes the configured ones always. Elevation is projected out: range * cos(pitch); the sensor's pose
-/// contributes x, y and yaw.
+/// Noise of a feature: covariance of the observation where the log has one (validCovariances), else
+/// the sensor sigmas of the log where positive, else the configured sigmas; `measurement.noise:
+/// configured` takes the configured ones always. Elevation is projected out: range * cos(pitch);
+/// the sensor's pose contributes x, y and yaw.
 class RangeBearingObservation final : public Frontend {
  public:
   RangeBearingObservation(const FrontendParameters& frontend,

@@ -25,9 +25,9 @@ std::vector<TrueLandmark> read_true_landmarks(const std::string& file);
 
 /// What X.truth.json says besides its description of the scenario.
 struct TruthNotes {
-  bool has_heading = true;                    ///< the path holds headings, not positions only
+  bool has_heading = true;  ///< the path holds headings, not positions only
   Eigen::Vector2d point_on_robot = Eigen::Vector2d::Zero();  ///< whose positions they are [m]
-  std::map<std::string, double> calibration;  ///< parameter name -> true value
+  std::map<std::string, double> calibration;                 ///< parameter name -> true value
 };
 
 /// Throws InputError where the file is no JSON object or a value has a wrong type.

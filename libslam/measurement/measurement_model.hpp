@@ -2,7 +2,8 @@
 // Contract of measurement models of landmarks.
 //
 // Given   a state with a pose block and a landmark block, and a feature in the sensor frame,
-// Then    `linearize` returns innovation (angles wrapped), derivatives and noise in the additive chart;
+// Then    `linearize` returns innovation (angles wrapped), derivatives and noise in the additive
+// chart;
 //         `initialize` returns the landmark that explains the feature exactly, with derivatives.
 
 #include <libslam/data/feature.hpp>

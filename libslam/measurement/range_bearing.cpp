@@ -1,8 +1,9 @@
-#include <libslam/measurement/range_bearing.hpp>
-
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+
+#include <Eigen/Geometry>
+
+#include <libslam/measurement/range_bearing.hpp>
 
 namespace libslam {
 
@@ -12,8 +13,8 @@ constexpr double kSmallestRange = 1e-6;
 
 struct Geometry {
   Eigen::Matrix2d R_world_sensor;
-  Eigen::Vector2d from_robot;   // landmark - robot, world frame
-  Eigen::Vector2d l_sensor;     // landmark in the sensor frame
+  Eigen::Vector2d from_robot;  // landmark - robot, world frame
+  Eigen::Vector2d l_sensor;    // landmark in the sensor frame
 };
 
 Geometry geometry_of(const GaussianState& state, BlockId pose, BlockId landmark,
@@ -28,11 +29,15 @@ Geometry geometry_of(const GaussianState& state, BlockId pose, BlockId landmark,
   return g;
 }
 
-Eigen::Vector2d polar(const Eigen::Vector2d& l) { return {l.norm(), std::atan2(l.y(), l.x())}; }
+Eigen::Vector2d polar(const Eigen::Vector2d& l) {
+  return {l.norm(), std::atan2(l.y(), l.x())};
+}
 
 }  // namespace
 
-BlockSpec RangeBearing::landmark_spec() const { return {"", Chart::kVector, 2, WorldRole::kPoint}; }
+BlockSpec RangeBearing::landmark_spec() const {
+  return {"", Chart::kVector, 2, WorldRole::kPoint};
+}
 
 MeasurementVector RangeBearing::predict(const GaussianState& state, BlockId pose, BlockId landmark,
                                         const Feature& feature) const {

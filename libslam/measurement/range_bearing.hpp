@@ -2,7 +2,8 @@
 // Range and bearing to a planar point landmark, from a sensor anywhere on the robot.
 //
 //   T_world_sensor = T_world_robot * T_robot_sensor,  l = landmark in the sensor frame
-//   h = [ |l| ;  atan2(l_y, l_x) ]          (seeds.md S1.7, there with the sensor at the robot origin)
+//   h = [ |l| ;  atan2(l_y, l_x) ]          (seeds.md S1.7, there with the sensor at the robot
+//   origin)
 //
 // Measurement: range [m], bearing [rad, counter-clockwise from the sensor's x axis].
 // Landmark block: (x, y) in the world [m].

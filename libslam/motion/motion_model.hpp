@@ -3,25 +3,27 @@
 //
 // Given   a state that holds the blocks the model asked for, and one odometry step,
 // Then    `linearize` returns the new pose, its derivatives with respect to the pose and to every
-//         calibration block, and the process noise, all in the additive (standard) chart of the blocks;
-//         the state is not touched;
+//         calibration block, and the process noise, all in the additive (standard) chart of the
+//         blocks; the state is not touched;
 // and     `sample` draws a new pose from the same distribution.
 
-#include <Eigen/Core>
-#include <libslam/data/motion_action.hpp>
-#include <libslam/state/gaussian_state.hpp>
 #include <random>
 #include <string>
 #include <vector>
+
+#include <Eigen/Core>
+
+#include <libslam/data/motion_action.hpp>
+#include <libslam/state/gaussian_state.hpp>
 
 namespace libslam {
 
 /// A calibration parameter as a block of the state.
 struct CalibrationSpec {
-  std::string name;           ///< block name, e.g. "scale_left"
+  std::string name;  ///< block name, e.g. "scale_left"
   double prior_mean = 1.0;
-  double prior_sigma = 0.0;   ///< standard deviation of the prior, > 0
-  double random_walk = 0.0;   ///< standard deviation per sqrt(second)
+  double prior_sigma = 0.0;  ///< standard deviation of the prior, > 0
+  double random_walk = 0.0;  ///< standard deviation per sqrt(second)
 };
 
 /// The calibration blocks of a model inside a state, in the order of `calibration()`.

@@ -1,4 +1,5 @@
-#include <libslam/pipeline/factory.hpp>
+#include <stdexcept>
+#include <string>
 
 #include <libslam/association/known.hpp>
 #include <libslam/association/nearest_neighbour.hpp>
@@ -7,9 +8,8 @@
 #include <libslam/motion/ackermann.hpp>
 #include <libslam/motion/differential.hpp>
 #include <libslam/motion/odometry_increment.hpp>
+#include <libslam/pipeline/factory.hpp>
 #include <libslam/state/chi_square.hpp>
-#include <stdexcept>
-#include <string>
 
 namespace libslam {
 

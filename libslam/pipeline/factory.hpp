@@ -1,10 +1,11 @@
 #pragma once
 // Configuration -> objects: the one place that knows concrete models.
 
+#include <memory>
+
 #include <libslam/config/parameters.hpp>
 #include <libslam/filter/ekf_slam.hpp>
 #include <libslam/frontend/frontend.hpp>
-#include <memory>
 
 namespace libslam {
 

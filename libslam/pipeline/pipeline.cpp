@@ -1,7 +1,7 @@
-#include <libslam/pipeline/pipeline.hpp>
+#include <optional>
 
 #include <libslam/pipeline/factory.hpp>
-#include <optional>
+#include <libslam/pipeline/pipeline.hpp>
 
 namespace libslam {
 

@@ -1,6 +1,9 @@
 #pragma once
 // One step of a log through all parts: odometry -> filter <- association <- features.
 
+#include <memory>
+#include <vector>
+
 #include <libslam/config/parameters.hpp>
 #include <libslam/data/log_step.hpp>
 #include <libslam/data/step_record.hpp>
@@ -8,8 +11,6 @@
 #include <libslam/frontend/frontend.hpp>
 #include <libslam/frontend/odometry.hpp>
 #include <libslam/policy/update_schedule.hpp>
-#include <memory>
-#include <vector>
 
 namespace libslam {
 
@@ -19,8 +20,8 @@ class Pipeline {
   explicit Pipeline(const Parameters& parameters);
 
   /// Moves by the odometry of the step and updates with its frame if one is due. Throws
-  /// UnusableOdometry (frontend/odometry.hpp) before anything has changed, and std::invalid_argument if
-  /// the odometry lacks a field that the configuration asks for.
+  /// UnusableOdometry (frontend/odometry.hpp) before anything has changed, and
+  /// std::invalid_argument if the odometry lacks a field that the configuration asks for.
   StepRecord process(const LogStep& step);
   /// The same without the odometry of the step: for steps whose odometry is unusable.
   StepRecord process_frame(const LogStep& step);

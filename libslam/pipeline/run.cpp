@@ -1,10 +1,10 @@
-#include <libslam/pipeline/run.hpp>
-
-#include <sys/resource.h>
-
-#include <Eigen/Eigenvalues>
 #include <chrono>
 #include <exception>
+#include <sys/resource.h>
+#include <utility>
+
+#include <Eigen/Eigenvalues>
+
 #include <libslam/config/digest.hpp>
 #include <libslam/config/version.hpp>
 #include <libslam/config/yaml_loader.hpp>
@@ -13,10 +13,10 @@
 #include <libslam/io/input_error.hpp>
 #include <libslam/io/rawlog_player.hpp>
 #include <libslam/pipeline/pipeline.hpp>
+#include <libslam/pipeline/run.hpp>
 #include <libslam/result/atomic_file.hpp>
 #include <libslam/result/recorder.hpp>
 #include <libslam/result/trajectory.hpp>
-#include <utility>
 
 namespace libslam {
 
@@ -61,7 +61,8 @@ class Run {
     replace_file(request.directory / "config.yaml", to_yaml(request.parameters));
   }
 
-  /// Processes steps until the end; an exception of the log is kept, so that results are saved first.
+  /// Processes steps until the end; an exception of the log is kept, so that results are saved
+  /// first.
   void play() {
     try {
       while (!stopped() && exit_code_ == 0) {
@@ -79,9 +80,9 @@ class Run {
   RunSummary finish() {
     const LandmarkMap map = finite_landmarks();
     const bool known = request_.parameters.association.method != "nearest_neighbour";
-    RunSummary summary = recorder_.finish(
-        summarize(), map, request_.truth,
-        known ? LandmarkIdentity::known : LandmarkIdentity::unknown);
+    RunSummary summary =
+        recorder_.finish(summarize(), map, request_.truth,
+                         known ? LandmarkIdentity::known : LandmarkIdentity::unknown);
     if (request_.parameters.output.mrpt_files) write_mrpt_files(map);
     if (failure_) std::rethrow_exception(failure_);
     return summary;
@@ -136,7 +137,8 @@ class Run {
   RunSummary summarize() {
     const InputSummary& input = player_.summary();
     const std::int64_t unusable = unusable_steps_ + pipeline_.frontend().unusable();
-    if (exit_code_ == 0 && (input.incomplete() || unusable > 0)) end(5, "part of the input unusable");
+    if (exit_code_ == 0 && (input.incomplete() || unusable > 0))
+      end(5, "part of the input unusable");
     RunSummary summary;
     summary.program = request_.program;
     summary.version = version();
@@ -147,9 +149,9 @@ class Run {
     summary.threads = request_.threads;
     summary.exit_code = exit_code_;
     summary.status = status_;
-    summary.input = {request_.rawlog, input.entries,  input.actions,
+    summary.input = {request_.rawlog,    input.entries,    input.actions,
                      input.observations, input.duration_s, input.skipped + unusable,
-                     input.repaired,  input.warnings};
+                     input.repaired,     input.warnings};
     auto& warnings = summary.input.warnings;
     warnings.insert(warnings.end(), warnings_.begin(), warnings_.end());
     const auto about_odometry = pipeline_.odometry().warnings();

@@ -5,12 +5,13 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <string>
+
 #include <libslam/config/parameters.hpp>
 #include <libslam/data/ground_truth.hpp>
 #include <libslam/data/step_record.hpp>
 #include <libslam/io/playback_pace.hpp>
 #include <libslam/result/run_summary.hpp>
-#include <string>
 
 namespace libslam {
 
@@ -29,12 +30,12 @@ struct RunRequest {
   std::function<void(double fraction, const StepRecord& step)> on_step;
 };
 
-/// Runs to the end of the log, to a stop, or until the filter diverges; whatever was computed is in the
-/// directory when this returns. The exit code of the contract is in the summary: 0 done, 5 part of the
-/// input was unusable, 6 diverged, 7 stopped. Throws InputError if the log cannot be opened or its
-/// input policy is strict and it has a defect, std::invalid_argument if the log lacks a field that the
-/// configuration asks for, std::runtime_error if the directory cannot be written; what was computed
-/// before is saved then, too.
+/// Runs to the end of the log, to a stop, or until the filter diverges; whatever was computed is in
+/// the directory when this returns. The exit code of the contract is in the summary: 0 done, 5 part
+/// of the input was unusable, 6 diverged, 7 stopped. Throws InputError if the log cannot be opened
+/// or its input policy is strict and it has a defect, std::invalid_argument if the log lacks a
+/// field that the configuration asks for, std::runtime_error if the directory cannot be written;
+/// what was computed before is saved then, too.
 RunSummary run_rawlog(const RunRequest& request);
 
 }  // namespace libslam

@@ -1,6 +1,6 @@
-#include <libslam/policy/excitation.hpp>
-
 #include <Eigen/Cholesky>
+
+#include <libslam/policy/excitation.hpp>
 
 namespace libslam {
 

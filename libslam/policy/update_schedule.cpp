@@ -1,12 +1,13 @@
-#include <libslam/policy/update_schedule.hpp>
-
 #include <stdexcept>
 #include <string>
+
+#include <libslam/policy/update_schedule.hpp>
 
 namespace libslam {
 
 namespace {
-// Time stamps of rawlogs have a resolution of 100 ns; a frame that is early by rounding alone is due.
+// Time stamps of rawlogs have a resolution of 100 ns; a frame that is early by rounding alone is
+// due.
 constexpr double kClockTolerance = 1e-4;
 }  // namespace
 

@@ -1,8 +1,10 @@
-#include <Eigen/Geometry>
 #include <cmath>
-#include <libslam/state/block.hpp>
 #include <numbers>
 #include <stdexcept>
+
+#include <Eigen/Geometry>
+
+#include <libslam/state/block.hpp>
 
 namespace libslam {
 
@@ -14,7 +16,8 @@ Eigen::Quaterniond rotation_of(const VectorRef& pose3d) {
 
 Eigen::Quaterniond exponential(const Eigen::Vector3d& theta) {
   const double angle = theta.norm();
-  const double half_sinc = angle < 1e-8 ? 0.5 - angle * angle / 48.0 : std::sin(0.5 * angle) / angle;
+  const double half_sinc =
+      angle < 1e-8 ? 0.5 - angle * angle / 48.0 : std::sin(0.5 * angle) / angle;
   const Eigen::Vector3d v = half_sinc * theta;
   return {std::cos(0.5 * angle), v.x(), v.y(), v.z()};
 }
@@ -36,10 +39,14 @@ double wrap_angle(double angle) {
 
 int tangent_dimension(const BlockSpec& spec) {
   switch (spec.chart) {
-    case Chart::kVector: return spec.size;
-    case Chart::kAngle: return 1;
-    case Chart::kSE2: return 3;
-    case Chart::kSE3: return 6;
+    case Chart::kVector:
+      return spec.size;
+    case Chart::kAngle:
+      return 1;
+    case Chart::kSE2:
+      return 3;
+    case Chart::kSE3:
+      return 6;
   }
   throw std::invalid_argument("block '" + spec.name + "': unknown chart");
 }
@@ -50,8 +57,12 @@ int storage_dimension(const BlockSpec& spec) {
 
 void boxplus(const BlockSpec& spec, Eigen::Ref<Eigen::VectorXd> x, const VectorRef& d) {
   switch (spec.chart) {
-    case Chart::kVector: x += d; return;
-    case Chart::kAngle: x[0] = wrap_angle(x[0] + d[0]); return;
+    case Chart::kVector:
+      x += d;
+      return;
+    case Chart::kAngle:
+      x[0] = wrap_angle(x[0] + d[0]);
+      return;
     case Chart::kSE2:
       x.head<2>() += d.head<2>();
       x[2] = wrap_angle(x[2] + d[2]);
@@ -66,8 +77,12 @@ void boxplus(const BlockSpec& spec, Eigen::Ref<Eigen::VectorXd> x, const VectorR
 TangentVector boxminus(const BlockSpec& spec, const VectorRef& a, const VectorRef& b) {
   TangentVector d;
   switch (spec.chart) {
-    case Chart::kVector: d = a - b; break;
-    case Chart::kAngle: d = TangentVector::Constant(1, wrap_angle(a[0] - b[0])); break;
+    case Chart::kVector:
+      d = a - b;
+      break;
+    case Chart::kAngle:
+      d = TangentVector::Constant(1, wrap_angle(a[0] - b[0]));
+      break;
     case Chart::kSE2:
       d = a - b;
       d[2] = wrap_angle(d[2]);

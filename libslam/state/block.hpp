@@ -1,8 +1,8 @@
 #pragma once
 // A typed block of the state: which chart it lives in and how the error acts on it.
 //
-// A block stores an *estimate* (storage coordinates) and contributes an *error* (tangent coordinates)
-// to the covariance. For every chart but SE(3) both have the same length.
+// A block stores an *estimate* (storage coordinates) and contributes an *error* (tangent
+// coordinates) to the covariance. For every chart but SE(3) both have the same length.
 //
 // | chart  | storage                      | tangent          | boxplus                           |
 // |--------|------------------------------|------------------|-----------------------------------|
@@ -11,9 +11,10 @@
 // | SE2    | x, y, phi                    | dx, dy, dphi     | additive in the world, phi wrapped|
 // | SE3    | x, y, z, qx, qy, qz, qw      | dp, dtheta (3+3) | p + dp, Exp(dtheta) R (world)     |
 
-#include <Eigen/Core>
 #include <compare>
 #include <string>
+
+#include <Eigen/Core>
 
 namespace libslam {
 

@@ -1,9 +1,9 @@
-#include <libslam/state/dense_covariance.hpp>
-
 #include <algorithm>
-#include <libslam/state/symmetric_kernel.hpp>
 #include <stdexcept>
 #include <string>
+
+#include <libslam/state/dense_covariance.hpp>
+#include <libslam/state/symmetric_kernel.hpp>
 
 namespace libslam {
 
@@ -11,7 +11,9 @@ namespace {
 
 using Eigen::Index;
 
-Index padded(Index n) { return (n + kKernelTile - 1) / kKernelTile * kKernelTile; }
+Index padded(Index n) {
+  return (n + kKernelTile - 1) / kKernelTile * kKernelTile;
+}
 
 [[noreturn]] void throw_dimension(const char* operation, const std::string& what) {
   throw std::invalid_argument(std::string("DenseCovariance::") + operation + ": " + what);
@@ -206,8 +208,7 @@ void DenseCovariance::transport(Index offset, const Eigen::Ref<const Eigen::Matr
   for (Index k = 0; k < d; ++k) {
     const auto b = gain_.col(k).head(n_);
     for (Index c = 0; c < n_; ++c)
-      p_.col(c).segment(c, n_ - c) +=
-          b[c] * u.col(k).tail(n_ - c) + u(c, k) * b.tail(n_ - c);
+      p_.col(c).segment(c, n_ - c) += b[c] * u.col(k).tail(n_ - c) + u(c, k) * b.tail(n_ - c);
   }
 }
 

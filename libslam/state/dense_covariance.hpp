@@ -1,11 +1,13 @@
 #pragma once
 // The reference covariance store: one dense matrix of which only the lower triangle is kept.
 
-#include <Eigen/Core>
-#include <libslam/state/covariance_store.hpp>
 #include <memory>
 #include <span>
 #include <vector>
+
+#include <Eigen/Core>
+
+#include <libslam/state/covariance_store.hpp>
 
 namespace libslam {
 

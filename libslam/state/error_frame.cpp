@@ -1,14 +1,16 @@
-#include <libslam/state/error_frame.hpp>
-
 #include <cmath>
 #include <stdexcept>
 #include <string>
+
+#include <libslam/state/error_frame.hpp>
 
 namespace libslam {
 
 namespace {
 
-Eigen::Vector2d rotated_90(const Eigen::Vector2d& v) { return {-v.y(), v.x()}; }
+Eigen::Vector2d rotated_90(const Eigen::Vector2d& v) {
+  return {-v.y(), v.x()};
+}
 
 /// Exponential map of SE(2) acting on one position: p -> R(theta) p + V(theta) xi.
 class PlanarExponential {

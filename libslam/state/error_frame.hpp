@@ -2,17 +2,20 @@
 // The error that the covariance describes, and how a correction moves the estimate.
 //
 // Models and stores always speak the additive (standard) error  delta = x - x_hat. An error frame
-// defines another error xi with delta = T(x_hat) xi, T linear in xi. Keeping P in delta and applying
+// defines another error xi with delta = T(x_hat) xi, T linear in xi. Keeping P in delta and
+// applying
 //     propagate:  P <- F P F^T + Q                      (same as T' F_xi T^-1 in xi)
 //     correct:    delta = K nu  ->  xi = T(x-)^-1 delta, x+ = x- [+] xi  (exact retraction)
 //                 P <- T(x+) T(x-)^-1 P (T(x+) T(x-)^-1)^T
-// is the same filter as one that keeps the covariance of xi, at the cost of one low-rank transport per
-// correction and none in propagation. Derivation: libslam/README.md, section "Error frames".
+// is the same filter as one that keeps the covariance of xi, at the cost of one low-rank transport
+// per correction and none in propagation. Derivation: libslam/README.md, section "Error frames".
 
-#include <Eigen/Core>
-#include <libslam/state/gaussian_state.hpp>
 #include <memory>
 #include <string_view>
+
+#include <Eigen/Core>
+
+#include <libslam/state/gaussian_state.hpp>
 
 namespace libslam {
 
@@ -38,9 +41,10 @@ class StandardFrame final : public ErrorFrame {
 
 /// Right-invariant error of SE_{1+n}(2): heading theta, position p and every world point m share
 ///     xi_theta = delta_theta,  xi_p = delta_p - J p delta_theta,  xi_m = delta_m - J m delta_theta
-/// with J the rotation by +90 degrees; blocks without a world role keep the additive error. Along the
-/// unobservable directions (a shift and a turn of the world) xi does not depend on the estimate, so
-/// the filter cannot gain information on them (Barrau & Bonnabel 2015, arXiv:1510.06263).
+/// with J the rotation by +90 degrees; blocks without a world role keep the additive error. Along
+/// the unobservable directions (a shift and a turn of the world) xi does not depend on the
+/// estimate, so the filter cannot gain information on them (Barrau & Bonnabel 2015,
+/// arXiv:1510.06263).
 class RightInvariantFrame final : public ErrorFrame {
  public:
   std::string_view name() const override { return "right_invariant"; }

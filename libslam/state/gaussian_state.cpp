@@ -1,10 +1,10 @@
-#include <libslam/state/gaussian_state.hpp>
-
 #include <algorithm>
 #include <array>
-#include <libslam/state/dense_covariance.hpp>
 #include <stdexcept>
 #include <string>
+
+#include <libslam/state/dense_covariance.hpp>
+#include <libslam/state/gaussian_state.hpp>
 
 namespace libslam {
 
@@ -68,8 +68,8 @@ BlockId GaussianState::append(const BlockSpec& spec, const VectorRef& estimate) 
     index = free_.back();
     free_.pop_back();
   }
-  slots_[static_cast<std::size_t>(index)] = {
-      spec, dimension_, tangent_dimension(spec), used_, estimate.size(), true};
+  slots_[static_cast<std::size_t>(index)] = {spec,  dimension_,      tangent_dimension(spec),
+                                             used_, estimate.size(), true};
   storage_.segment(used_, estimate.size()) = estimate;
   used_ += estimate.size();
   dimension_ += tangent_dimension(spec);
@@ -87,7 +87,8 @@ BlockId GaussianState::add(const BlockSpec& spec, const VectorRef& estimate, con
 
 BlockId GaussianState::augment(const BlockSpec& spec, const Initialization& initialization) {
   const Index d = tangent_dimension(spec);
-  require_shape(spec, "noise", initialization.cov_noise.rows(), initialization.cov_noise.cols(), d, d);
+  require_shape(spec, "noise", initialization.cov_noise.rows(), initialization.cov_noise.cols(), d,
+                d);
   require_shape(spec, "estimate", initialization.estimate.size(), 1, storage_dimension(spec), 1);
   std::array<PlacedJacobian, BlockJacobians::kCapacity> placed;
   std::size_t count = 0;

@@ -1,14 +1,16 @@
 #pragma once
 // The Gaussian state: named blocks, their estimates, and one covariance over their errors.
 
-#include <Eigen/Core>
-#include <libslam/state/block.hpp>
-#include <libslam/state/covariance_store.hpp>
-#include <libslam/state/linearization.hpp>
 #include <memory>
 #include <optional>
 #include <string_view>
 #include <vector>
+
+#include <Eigen/Core>
+
+#include <libslam/state/block.hpp>
+#include <libslam/state/covariance_store.hpp>
+#include <libslam/state/linearization.hpp>
 
 namespace libslam {
 

@@ -1,9 +1,11 @@
 #pragma once
 // What models hand to filters: numbers and the blocks they belong to. Bounded sizes, no heap.
 
-#include <Eigen/Core>
 #include <array>
 #include <cassert>
+
+#include <Eigen/Core>
+
 #include <libslam/data/feature.hpp>
 #include <libslam/state/block.hpp>
 

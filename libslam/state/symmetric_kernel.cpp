@@ -1,7 +1,7 @@
-#include <libslam/state/symmetric_kernel.hpp>
-
 #include <algorithm>
 #include <cstring>
+
+#include <libslam/state/symmetric_kernel.hpp>
 
 namespace libslam {
 
@@ -15,7 +15,8 @@ static_assert(kKernelTile == 2 * kLanes);
 
 }  // namespace
 
-// ThreadSanitizer instruments the resolver that target_clones generates, which runs before it is ready.
+// ThreadSanitizer instruments the resolver that target_clones generates, which runs before it is
+// ready.
 #if defined(__SANITIZE_THREAD__)
 #define LIBSLAM_WIDEST_VECTORS
 #else
@@ -25,9 +26,9 @@ static_assert(kKernelTile == 2 * kLanes);
 
 // A tile of 16 rows and 4 columns is accumulated in registers (8 AVX-512 or 16 AVX2 accumulators)
 // over all m columns of W, then subtracted once: P is read and written exactly once.
-LIBSLAM_WIDEST_VECTORS void
-subtract_outer_product(double* p, std::ptrdiff_t p_stride, std::ptrdiff_t n, const double* w,
-                       std::ptrdiff_t w_stride, std::ptrdiff_t m) {
+LIBSLAM_WIDEST_VECTORS void subtract_outer_product(double* p, std::ptrdiff_t p_stride,
+                                                   std::ptrdiff_t n, const double* w,
+                                                   std::ptrdiff_t w_stride, std::ptrdiff_t m) {
   for (std::ptrdiff_t j0 = 0; j0 < n; j0 += kColumns) {
     for (std::ptrdiff_t i0 = j0 - j0 % kKernelTile; i0 < n; i0 += kKernelTile) {
       Lanes low[kColumns] = {}, high[kColumns] = {};

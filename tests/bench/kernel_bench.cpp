@@ -1,13 +1,12 @@
 // The O(n^2) part of an update alone: P -= W W^T on the lower triangle, 20 columns (ten sightings).
 
-#include <benchmark/benchmark.h>
-
 #include <random>
+#include <support/random_matrix.hpp>
 
 #include <Eigen/Dense>
+#include <benchmark/benchmark.h>
 
 #include <libslam/state/symmetric_kernel.hpp>
-#include <support/random_matrix.hpp>
 
 namespace {
 

@@ -1,10 +1,11 @@
 // Whole logs with the identities of the log, read beforehand: the pipeline from MRPT's observations
 // to the record of a step against MRPT's class, on the same pairs.
 
-#include <benchmark/benchmark.h>
-
 #include <bench/mrpt_filter.hpp>
 #include <bench/preloaded_log.hpp>
+
+#include <benchmark/benchmark.h>
+
 #include <libslam/config/ini_loader.hpp>
 #include <libslam/pipeline/pipeline.hpp>
 
@@ -79,7 +80,13 @@ BENCHMARK_CAPTURE(demo_mrpt, davison, Method::kDavison)->Name("demo/mrpt_davison
 BENCHMARK_CAPTURE(park, invariant, "right_invariant")->Unit(kMs);
 BENCHMARK_CAPTURE(park, standard, "standard")->Unit(kMs);
 // One pass takes seconds.
-BENCHMARK_CAPTURE(park_mrpt, default, Method::kDefault)->Name("park/mrpt_default")->Unit(kMs)->Iterations(1);
-BENCHMARK_CAPTURE(park_mrpt, davison, Method::kDavison)->Name("park/mrpt_davison")->Unit(kMs)->Iterations(1);
+BENCHMARK_CAPTURE(park_mrpt, default, Method::kDefault)
+    ->Name("park/mrpt_default")
+    ->Unit(kMs)
+    ->Iterations(1);
+BENCHMARK_CAPTURE(park_mrpt, davison, Method::kDavison)
+    ->Name("park/mrpt_davison")
+    ->Unit(kMs)
+    ->Iterations(1);
 
 }  // namespace

@@ -1,6 +1,6 @@
-#include <mrpt/config/CConfigFile.h>
-
 #include <bench/mrpt_filter.hpp>
+
+#include <mrpt/config/CConfigFile.h>
 
 namespace libslam::bench {
 

@@ -1,13 +1,13 @@
 #include <algorithm>
+#include <bench/preloaded_log.hpp>
 #include <cstdlib>
+#include <support/temporary_directory.hpp>
 
 #include <Eigen/Dense>
 #include <mrpt/obs/CObservationBearingRange.h>
 
-#include <bench/preloaded_log.hpp>
 #include <libslam/io/importers/victoria_park.hpp>
 #include <libslam/io/rawlog_player.hpp>
-#include <support/temporary_directory.hpp>
 
 namespace libslam::bench {
 

@@ -18,13 +18,14 @@ using PreloadedLog = std::vector<LogStep>;
 /// MRPT's packaged range-bearing demo.
 const PreloadedLog& kf_slam_demo();
 
-/// Victoria Park in the relative form of iSAM, imported into a directory that is removed; nothing if
-/// the data set is not under $LIBSLAM_DATA (default: ../shared/data beside the checkout). Every
-/// observation states the largest range of the log as the range of its sensor, because MRPT predicts
-/// what lies within.
+/// Victoria Park in the relative form of iSAM, imported into a directory that is removed; nothing
+/// if the data set is not under $LIBSLAM_DATA (default: ../shared/data beside the checkout). Every
+/// observation states the largest range of the log as the range of its sensor, because MRPT
+/// predicts what lies within.
 const std::optional<PreloadedLog>& victoria_park();
 
-/// Root mean square of the sigmas that the observations of a log state, range [m] and bearing [rad].
+/// Root mean square of the sigmas that the observations of a log state, range [m] and bearing
+/// [rad].
 Eigen::Vector2d mean_sigmas(const PreloadedLog& log);
 
 }  // namespace libslam::bench

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <bench/ring_world.hpp>
 #include <cmath>
 #include <map>
 #include <random>
@@ -10,7 +11,6 @@
 #include <mrpt/obs/CObservationBearingRange.h>
 #include <mrpt/poses/CPosePDFGaussian.h>
 
-#include <bench/ring_world.hpp>
 #include <libslam/config/parameters.hpp>
 #include <libslam/frontend/odometry.hpp>
 #include <libslam/pipeline/factory.hpp>
@@ -74,8 +74,7 @@ class Generator {
           pose.inverseComposePoint({radius_ * std::cos(angle), radius_ * std::sin(angle)});
       CObservationBearingRange::TMeasurement measured;
       measured.landmarkID = (landmark + landmarks_) % landmarks_;
-      measured.range =
-          static_cast<float>(seen.norm() + RingWorld::kSigmaRange * normal_(random_));
+      measured.range = static_cast<float>(seen.norm() + RingWorld::kSigmaRange * normal_(random_));
       measured.yaw = static_cast<float>(std::atan2(seen.y, seen.x) +
                                         RingWorld::kSigmaBearing * normal_(random_));
       observation->sensedData.push_back(measured);

@@ -1,5 +1,6 @@
 #pragma once
-// A synthetic world whose steps cost the same for ever: landmarks on a ring, a robot that drives laps.
+// A synthetic world whose steps cost the same for ever: landmarks on a ring, a robot that drives
+// laps.
 
 #include <vector>
 
@@ -20,15 +21,17 @@ struct RingStep {
   Eigen::Vector3d truth = Eigen::Vector3d::Zero();  ///< pose in the frame of step 0
 };
 
-/// The robot passes `kAdvance` landmarks per step and sees the `kSeen` nearest ones, with identities
-/// and Gaussian noise. The last step ends one advance before the first, so the lap can be repeated.
+/// The robot passes `kAdvance` landmarks per step and sees the `kSeen` nearest ones, with
+/// identities and Gaussian noise. The last step ends one advance before the first, so the lap can
+/// be repeated.
 struct RingWorld {
   static constexpr int kSeen = 10;
   static constexpr int kAdvance = 5;
   static constexpr double kSigmaRange = 0.01;     ///< [m]
   static constexpr double kSigmaBearing = 0.001;  ///< [rad]
 
-  /// `landmarks` is a multiple of kAdvance, at least 2 * kSeen; the same number gives the same world.
+  /// `landmarks` is a multiple of kAdvance, at least 2 * kSeen; the same number gives the same
+  /// world.
   explicit RingWorld(int landmarks);
 
   std::vector<RingStep> lap;

@@ -1,13 +1,13 @@
 // One step with ten sightings in a complete map, against the number of landmarks: libslam in both
 // error frames and both methods of MRPT, all with the same data.
 
-#include <benchmark/benchmark.h>
-
+#include <bench/mrpt_filter.hpp>
+#include <bench/ring_world.hpp>
 #include <optional>
 #include <string>
 
-#include <bench/mrpt_filter.hpp>
-#include <bench/ring_world.hpp>
+#include <benchmark/benchmark.h>
+
 #include <libslam/filter/ekf_slam.hpp>
 #include <libslam/pipeline/factory.hpp>
 
@@ -56,7 +56,8 @@ class MrptRingFilter {
 
 /// What is wrong with a filter after `last`, or nothing: a filter that lost its way is not timed.
 template <class Filter>
-std::optional<std::string> defect(const Filter& filter, const RingStep& last, std::int64_t landmarks) {
+std::optional<std::string> defect(const Filter& filter, const RingStep& last,
+                                  std::int64_t landmarks) {
   if (filter.landmarks() != static_cast<std::size_t>(landmarks)) return "the map is not complete";
   const Eigen::Vector3d error = filter.pose() - last.truth;
   if (!(error.head<2>().norm() < 1.0)) return "the filter diverged";
@@ -85,8 +86,12 @@ void sizes_up_to(benchmark::internal::Benchmark* family, int largest) {
   family->Unit(benchmark::kMillisecond);
 }
 
-void step_invariant(benchmark::State& state) { step<LibslamFilter>(state, "right_invariant"); }
-void step_standard(benchmark::State& state) { step<LibslamFilter>(state, "standard"); }
+void step_invariant(benchmark::State& state) {
+  step<LibslamFilter>(state, "right_invariant");
+}
+void step_standard(benchmark::State& state) {
+  step<LibslamFilter>(state, "standard");
+}
 void step_mrpt(benchmark::State& state) {
   step<MrptRingFilter>(state, MrptFilter::Method::kDefault);
 }
@@ -98,6 +103,8 @@ BENCHMARK(step_invariant)->Name("step/invariant")->Apply([](auto* b) { sizes_up_
 BENCHMARK(step_standard)->Name("step/standard")->Apply([](auto* b) { sizes_up_to(b, 1600); });
 // MRPT takes half a second per step with 800 landmarks.
 BENCHMARK(step_mrpt)->Name("step/mrpt_default")->Apply([](auto* b) { sizes_up_to(b, 200); });
-BENCHMARK(step_mrpt_davison)->Name("step/mrpt_davison")->Apply([](auto* b) { sizes_up_to(b, 400); });
+BENCHMARK(step_mrpt_davison)->Name("step/mrpt_davison")->Apply([](auto* b) {
+  sizes_up_to(b, 400);
+});
 
 }  // namespace

@@ -1,11 +1,11 @@
+#include <algorithm>
+#include <ceres/ceres.h>
+#include <stdexcept>
 #include <tests/golden/batch_landmark_slam.hpp>
 
-#include <ceres/ceres.h>
-
 #include <Eigen/Dense>
-#include <algorithm>
+
 #include <libslam/io/arc_motion.hpp>
-#include <stdexcept>
 
 namespace libslam::test {
 
@@ -50,9 +50,9 @@ struct SightingResidual {
 };
 
 std::size_t row_at(const ImportedLog& log, double time) {
-  const auto row = std::lower_bound(
-      log.odometry.begin(), log.odometry.end(), time - 1e-6,
-      [](const ImportedOdometry& reading, double t) { return reading.time < t; });
+  const auto row =
+      std::lower_bound(log.odometry.begin(), log.odometry.end(), time - 1e-6,
+                       [](const ImportedOdometry& reading, double t) { return reading.time < t; });
   if (row == log.odometry.end() || row->time > time + 1e-6)
     throw std::invalid_argument("a scan stands between odometry rows");
   return static_cast<std::size_t>(row - log.odometry.begin());

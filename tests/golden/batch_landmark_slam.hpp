@@ -1,18 +1,20 @@
 #pragma once
 // The best possible answer: nonlinear least squares over all poses and landmarks of a log (Ceres).
 
-#include <Eigen/Core>
 #include <cstdint>
-#include <libslam/io/importers/imported_log.hpp>
 #include <map>
 #include <vector>
+
+#include <Eigen/Core>
+
+#include <libslam/io/importers/imported_log.hpp>
 
 namespace libslam::test {
 
 struct BatchEstimate {
-  std::vector<Eigen::Vector3d> poses;               ///< x [m], y [m], phi [rad]; one per odometry row
+  std::vector<Eigen::Vector3d> poses;  ///< x [m], y [m], phi [rad]; one per odometry row
   std::map<std::int64_t, Eigen::Vector2d> landmarks;  ///< [m]
-  double initial_cost = 0.0, final_cost = 0.0;      ///< half the sum of squared whitened residuals
+  double initial_cost = 0.0, final_cost = 0.0;  ///< half the sum of squared whitened residuals
   bool converged = false;
 };
 

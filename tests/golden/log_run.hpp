@@ -1,9 +1,14 @@
 #pragma once
 // A shipped configuration on a log, in a scratch directory.
 
+#include <filesystem>
+#include <string>
+#include <tests/support/temporary_directory.hpp>
+#include <tests/unit/io/data_directory.hpp>
+#include <vector>
+
 #include <gtest/gtest.h>
 
-#include <filesystem>
 #include <libslam/config/validation.hpp>
 #include <libslam/config/yaml_loader.hpp>
 #include <libslam/io/importers/imported_log.hpp>
@@ -11,10 +16,6 @@
 #include <libslam/map/landmark_map.hpp>
 #include <libslam/pipeline/run.hpp>
 #include <libslam/result/trajectory.hpp>
-#include <string>
-#include <tests/support/temporary_directory.hpp>
-#include <tests/unit/io/data_directory.hpp>
-#include <vector>
 
 namespace libslam::test {
 
@@ -83,9 +84,8 @@ inline PathDifference compare_paths(const LogRun& a, const LogRun& b) {
 }
 
 /// Skips the test with a sentence where a data set is not there.
-#define LIBSLAM_REQUIRE_DATA(variable, name)                                    \
-  const std::string variable = ::libslam::test::data_set(name);                 \
-  if (variable.empty())                                                         \
-  GTEST_SKIP() << "data set " << (name) << " is not in $LIBSLAM_DATA"
+#define LIBSLAM_REQUIRE_DATA(variable, name)                    \
+  const std::string variable = ::libslam::test::data_set(name); \
+  if (variable.empty()) GTEST_SKIP() << "data set " << (name) << " is not in $LIBSLAM_DATA"
 
 }  // namespace libslam::test

@@ -1,7 +1,8 @@
 // UTIAS Lost in the Woods: real robot, 17 tubes, 341 m, identities removed.
 
-#include <libslam/io/importers/lost_in_the_woods.hpp>
 #include <tests/golden/log_run.hpp>
+
+#include <libslam/io/importers/lost_in_the_woods.hpp>
 
 using namespace libslam;
 using namespace libslam::test;
@@ -29,7 +30,8 @@ ImportedLog log_without_identities(const std::string& directory) {
 TEST(LostInTheWoods, MapPathAndConsistencyWithoutIdentities) {
   LIBSLAM_REQUIRE_DATA(directory, kData);
   const TemporaryDirectory scratch;
-  const LogRun run = run_imported(kConfig, log_without_identities(directory), scratch.path() / "run");
+  const LogRun run =
+      run_imported(kConfig, log_without_identities(directory), scratch.path() / "run");
   EXPECT_EQ(run.map.size(), 17u);
   const TruthComparison& truth = *run.summary.truth;
   EXPECT_LE(*truth.map->rmse_aligned_m, 0.03);
@@ -60,9 +62,10 @@ TEST(LostInTheWoods, AFalsifiedLogIsSeenThrough) {
   distort_wheels(falsified, kLeft, kRight, kVirtualTrack);
   const LogRun before = run_imported(kConfig, honest, scratch.path() / "honest");
   const LogRun after = run_imported(kConfig, falsified, scratch.path() / "falsified");
-  EXPECT_NEAR(before.calibration("scale_left").mean / after.calibration("scale_left").mean, kLeft, 0.002);
-  EXPECT_NEAR(before.calibration("scale_right").mean / after.calibration("scale_right").mean, kRight,
+  EXPECT_NEAR(before.calibration("scale_left").mean / after.calibration("scale_left").mean, kLeft,
               0.002);
+  EXPECT_NEAR(before.calibration("scale_right").mean / after.calibration("scale_right").mean,
+              kRight, 0.002);
   EXPECT_TRUE(after.calibration("scale_left").observable);
 
   std::vector<std::string> settings = kTrustedOdometry;

@@ -1,7 +1,8 @@
 // UTIAS MRCLAM 6: five real robots, 15 barcode landmarks, known identities, one configuration.
 
-#include <libslam/io/importers/mrclam.hpp>
 #include <tests/golden/log_run.hpp>
+
+#include <libslam/io/importers/mrclam.hpp>
 
 using namespace libslam;
 using namespace libslam::test;

@@ -1,9 +1,10 @@
 // Victoria Park, Sydney: real truck, 4 km, tree trunks.
 
-#include <libslam/io/importers/victoria_park.hpp>
-#include <libslam/result/alignment.hpp>
 #include <tests/golden/batch_landmark_slam.hpp>
 #include <tests/golden/log_run.hpp>
+
+#include <libslam/io/importers/victoria_park.hpp>
+#include <libslam/result/alignment.hpp>
 
 using namespace libslam;
 using namespace libslam::test;
@@ -21,14 +22,17 @@ VictoriaParkOptions distorted(double speed, double steering, double bias) {
   return options;
 }
 
-double gps_rmse(const LogRun& run) { return run.summary.truth->path->aligned->rmse_m; }
+double gps_rmse(const LogRun& run) {
+  return run.summary.truth->path->aligned->rmse_m;
+}
 
 }  // namespace
 
 TEST(VictoriaPark, GpsErrorAndLandmarksFromTreeDetections) {
   LIBSLAM_REQUIRE_DATA(directory, "victoria_park");
   const TemporaryDirectory scratch;
-  const LogRun run = run_imported(kConfig, import_victoria_park(directory, {}), scratch.path() / "run");
+  const LogRun run =
+      run_imported(kConfig, import_victoria_park(directory, {}), scratch.path() / "run");
   ASSERT_TRUE(run.summary.truth && run.summary.truth->path);
   EXPECT_GE(run.summary.truth->path->poses, 940);
   EXPECT_LE(gps_rmse(run), 1.9);
@@ -42,9 +46,12 @@ TEST(VictoriaPark, BothSteeringCalibrationsGiveOnePathAndTheirRatio) {
   const TemporaryDirectory scratch;
   VictoriaParkOptions drs;
   drs.steering = VictoriaParkOptions::Steering::kDrs;
-  const LogRun a = run_imported(kConfig, import_victoria_park(directory, {}), scratch.path() / "aa3");
-  const LogRun b = run_imported(kConfig, import_victoria_park(directory, drs), scratch.path() / "drs");
-  EXPECT_NEAR(a.calibration("scale_steering").mean / b.calibration("scale_steering").mean, 1.0592, 0.001);
+  const LogRun a =
+      run_imported(kConfig, import_victoria_park(directory, {}), scratch.path() / "aa3");
+  const LogRun b =
+      run_imported(kConfig, import_victoria_park(directory, drs), scratch.path() / "drs");
+  EXPECT_NEAR(a.calibration("scale_steering").mean / b.calibration("scale_steering").mean, 1.0592,
+              0.001);
   const PathDifference difference = compare_paths(a, b);
   EXPECT_GT(difference.poses, 10000);
   EXPECT_LE(difference.max, 0.05);
@@ -76,8 +83,9 @@ TEST(VictoriaPark, KnownAssociationComesCloseToTheBatchOptimum) {
   isam.association = VictoriaParkOptions::Association::kIsam;
   const ImportedLog log = import_victoria_park(directory, isam);
   const LogRun run = run_imported("victoria_park_known_ids.yaml", log, scratch.path() / "run");
-  const LogRun standard = run_imported("victoria_park_known_ids.yaml", log, scratch.path() / "standard",
-                                       {"filter.error_frame=standard"});
+  const LogRun standard =
+      run_imported("victoria_park_known_ids.yaml", log, scratch.path() / "standard",
+                   {"filter.error_frame=standard"});
   BatchEstimate start;
   start.poses.push_back(Eigen::Vector3d::Zero());
   for (const auto& pose : run.path) start.poses.push_back(pose.pose);

@@ -1,8 +1,9 @@
 #pragma once
 // Random matrices for tests, from an explicit generator.
 
-#include <Eigen/Core>
 #include <random>
+
+#include <Eigen/Core>
 
 namespace libslam::testing {
 

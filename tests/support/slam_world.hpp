@@ -1,13 +1,15 @@
 #pragma once
 // A small simulated world for tests of the whole filter: landmarks on a grid, a drive on a circle.
 
-#include <Eigen/Core>
 #include <cmath>
+#include <random>
+#include <vector>
+
+#include <Eigen/Core>
+
 #include <libslam/data/feature.hpp>
 #include <libslam/data/motion_action.hpp>
 #include <libslam/state/block.hpp>
-#include <random>
-#include <vector>
 
 namespace libslam::testing {
 
@@ -31,8 +33,8 @@ struct SlamWorld {
     std::normal_distribution<double> normal;
     const Eigen::Vector3d increment = arc(step_length, step_turn);
     const double c = std::cos(pose[2]), s = std::sin(pose[2]);
-    pose += Eigen::Vector3d(c * increment[0] - s * increment[1], s * increment[0] + c * increment[1],
-                            increment[2]);
+    pose += Eigen::Vector3d(c * increment[0] - s * increment[1],
+                            s * increment[0] + c * increment[1], increment[2]);
     pose[2] = wrap_angle(pose[2]);
     MotionAction action;
     action.dt = 0.1;
@@ -52,15 +54,17 @@ struct SlamWorld {
     std::vector<Feature> features;
     const double heading = pose[2] + T_robot_sensor[2];
     const double c = std::cos(pose[2]), s = std::sin(pose[2]);
-    const Eigen::Vector2d sensor = pose.head<2>() + Eigen::Vector2d(c * T_robot_sensor[0] - s * T_robot_sensor[1],
-                                                                    s * T_robot_sensor[0] + c * T_robot_sensor[1]);
+    const Eigen::Vector2d sensor =
+        pose.head<2>() + Eigen::Vector2d(c * T_robot_sensor[0] - s * T_robot_sensor[1],
+                                         s * T_robot_sensor[0] + c * T_robot_sensor[1]);
     for (std::size_t i = 0; i < landmarks.size(); ++i) {
       const Eigen::Vector2d d = landmarks[i] - sensor;
       if (d.norm() > sensor_range) continue;
       Feature& feature = features.emplace_back();
       feature.id = static_cast<std::int64_t>(i);
       feature.T_robot_sensor = T_robot_sensor;
-      feature.cov = Eigen::Vector2d(sigma_range * sigma_range, sigma_bearing * sigma_bearing).asDiagonal();
+      feature.cov =
+          Eigen::Vector2d(sigma_range * sigma_range, sigma_bearing * sigma_bearing).asDiagonal();
       feature.z = Eigen::Vector2d(
           d.norm() + noise * sigma_range * normal(random),
           wrap_angle(std::atan2(d.y(), d.x()) - heading + noise * sigma_bearing * normal(random)));

@@ -1,12 +1,12 @@
 // slam-run and slam-evaluate as a user meets them: exit codes, one-line messages, nothing lost.
 
-#include <signal.h>
-#include <unistd.h>
-
 #include <chrono>
-#include <nlohmann/json.hpp>
+#include <signal.h>
 #include <support/program_run.hpp>
 #include <thread>
+#include <unistd.h>
+
+#include <nlohmann/json.hpp>
 
 namespace libslam {
 namespace {
@@ -43,7 +43,9 @@ TEST_F(SlamRun, AGoodLogGivesTheWholeRunDirectory) {
   // The effective configuration reproduces the run bit for bit, with any number of threads.
   const std::string trajectory = read_all(path("run/trajectory.csv"));
   EXPECT_EQ(run(kRun + " " + path("run/config.yaml") + " " + kGoodLog + " --threads 2 --out " +
-                path("again")).code, 0);
+                path("again"))
+                .code,
+            0);
   EXPECT_EQ(read_all(path("again/trajectory.csv")), trajectory);
   EXPECT_EQ(read_all(path("again/map.csv")), read_all(path("run/map.csv")));
   const Outcome table = run(kEvaluate + " " + path("run") + " " + path("again"));
@@ -67,9 +69,10 @@ TEST_F(SlamRun, CommandLineAndConfigurationErrors) {
   expect_refused(slam_run(path("bad.yaml") + " " + kGoodLog), 3, "gate_probability");
   expect_refused(slam_run(path("bad.yaml") + " " + kGoodLog), 3, "bad.yaml:2:");
   expect_refused(slam_run(path("none.yaml") + " " + kGoodLog), 3, "none.yaml");
-  expect_refused(slam_run(kConfig + " " + kGoodLog + " --set filter.error_frame=sideways"), 3, "right_invariant");
-  expect_refused(slam_run(kConfig + " " + kGoodLog + " --set calibration.scale_left.enabled=true"), 3,
-                 "scale_left");
+  expect_refused(slam_run(kConfig + " " + kGoodLog + " --set filter.error_frame=sideways"), 3,
+                 "right_invariant");
+  expect_refused(slam_run(kConfig + " " + kGoodLog + " --set calibration.scale_left.enabled=true"),
+                 3, "scale_left");
   EXPECT_FALSE(std::filesystem::exists(path("run")));
 }
 
@@ -97,7 +100,8 @@ TEST_F(SlamRun, ATruncatedLogKeepsWhatCameBefore) {
 }
 
 TEST_F(SlamRun, OutputThatCannotBeWrittenOrIsInUse) {
-  expect_refused(run(kRun + " " + kConfig + " " + kGoodLog + " --out /proc/none/run"), 2, "/proc/none/run");
+  expect_refused(run(kRun + " " + kConfig + " " + kGoodLog + " --out /proc/none/run"), 2,
+                 "/proc/none/run");
   write("run/precious.txt", "keep me");
   expect_refused(slam_run(kConfig + " " + kGoodLog), 2, "--force");
   EXPECT_EQ(read_all(path("run/precious.txt")), "keep me");
@@ -141,8 +145,9 @@ TEST_F(SlamRun, OdometryThatIsNotFiniteIsLeftOutOrRefused) {
   });
   EXPECT_EQ(slam_run(kConfig + " " + log).code, 5);
   EXPECT_NEAR(summary()["result"]["pose"][0].get<double>(), 4.9, 1e-9);
-  EXPECT_EQ(run(kRun + " " + kConfig + " " + log + " --input-policy strict --out " + path("strict")).code,
-            4);
+  EXPECT_EQ(
+      run(kRun + " " + kConfig + " " + log + " --input-policy strict --out " + path("strict")).code,
+      4);
 }
 
 }  // namespace

@@ -1,11 +1,12 @@
+#include <map>
+#include <set>
+
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
 #include <rapidcheck/gtest.h>
 
 #include <libslam/association/known.hpp>
 #include <libslam/association/nearest_neighbour.hpp>
-#include <map>
-#include <set>
 
 using namespace libslam;
 
@@ -17,7 +18,8 @@ class Table final : public Compatibility {
   explicit Table(std::vector<std::vector<double>> distance2) : distance2_(std::move(distance2)) {}
   std::optional<Match> test(std::size_t feature, std::size_t landmark, double limit) override {
     const double d2 = distance2_[feature][landmark];
-    if (d2 > 10.0 * limit) return std::nullopt;  // "certainly far": any bound above the limit will do
+    if (d2 > 10.0 * limit)
+      return std::nullopt;  // "certainly far": any bound above the limit will do
     return Match{d2, 0.0};
   }
 
@@ -74,9 +76,11 @@ TEST(NearestNeighbour, TheZoneBetweenTheGatesIsDropped) {
   const auto features = features_with({kNoIdentity});
   NearestNeighbour nearest(9.0, 40.0);
   std::vector<Verdict> verdicts;
-  const std::pair<double, Outcome> cases[] = {
-      {8.9, Outcome::kPaired}, {9.1, Outcome::kAmbiguous}, {39.9, Outcome::kAmbiguous},
-      {40.1, Outcome::kNew},   {1e9, Outcome::kNew}};
+  const std::pair<double, Outcome> cases[] = {{8.9, Outcome::kPaired},
+                                              {9.1, Outcome::kAmbiguous},
+                                              {39.9, Outcome::kAmbiguous},
+                                              {40.1, Outcome::kNew},
+                                              {1e9, Outcome::kNew}};
   for (const auto& [distance2, outcome] : cases) {
     Table table(std::vector<std::vector<double>>{{distance2}});
     nearest.associate(features, registry, table, verdicts);
@@ -115,7 +119,8 @@ TEST(NearestNeighbour, RefusesGatesInTheWrongOrder) {
 }
 
 RC_GTEST_PROP(NearestNeighbour, IsOneToOneAndNeverBreaksAGate, ()) {
-  const auto rows = *rc::gen::inRange<std::size_t>(1, 8), cols = *rc::gen::inRange<std::size_t>(1, 8);
+  const auto rows = *rc::gen::inRange<std::size_t>(1, 8),
+             cols = *rc::gen::inRange<std::size_t>(1, 8);
   std::vector<std::vector<double>> distance2(rows, std::vector<double>(cols));
   for (auto& row : distance2)
     for (auto& value : row) value = 0.1 * *rc::gen::inRange(0, 600);

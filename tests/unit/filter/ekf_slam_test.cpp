@@ -1,13 +1,14 @@
-#include <gtest/gtest.h>
+#include <limits>
+#include <tests/support/slam_world.hpp>
 
 #include <Eigen/Dense>
+#include <gtest/gtest.h>
+
 #include <libslam/association/known.hpp>
 #include <libslam/association/nearest_neighbour.hpp>
 #include <libslam/filter/ekf_slam.hpp>
 #include <libslam/measurement/range_bearing.hpp>
 #include <libslam/motion/odometry_increment.hpp>
-#include <limits>
-#include <tests/support/slam_world.hpp>
 
 using namespace libslam;
 using libslam::testing::SlamWorld;
@@ -97,8 +98,10 @@ TEST(EkfSlam, StepsWithoutOdometryAddTheirNoise) {
   EkfSlam filter(std::move(parts));
   filter.propagate(nullptr);
   filter.propagate(nullptr);
-  EXPECT_LT((filter.state().covariance_of(filter.pose()).diagonal() - Eigen::Vector3d(0.02, 0.08, 0.18)).norm(),
-            1e-15);
+  EXPECT_LT(
+      (filter.state().covariance_of(filter.pose()).diagonal() - Eigen::Vector3d(0.02, 0.08, 0.18))
+          .norm(),
+      1e-15);
 }
 
 TEST(EkfSlam, RefusesMissingParts) {

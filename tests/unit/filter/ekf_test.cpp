@@ -1,9 +1,10 @@
-#include <gtest/gtest.h>
-
-#include <Eigen/Dense>
-#include <libslam/filter/ekf.hpp>
 #include <random>
 #include <tests/support/random_matrix.hpp>
+
+#include <Eigen/Dense>
+#include <gtest/gtest.h>
+
+#include <libslam/filter/ekf.hpp>
 
 using namespace libslam;
 using libslam::testing::random_covariance;
@@ -28,8 +29,8 @@ TEST(Ekf, CorrectionIsTheKalmanFilterOnALinearProblem) {
   std::mt19937_64 random(51);
   for (const char* frame : {"standard", "right_invariant"}) {
     GaussianState state;
-    const BlockId pose = state.add({"pose", Chart::kSE2, 3, WorldRole::kPose}, Eigen::Vector3d::Zero(),
-                                   Eigen::Matrix3d::Zero());
+    const BlockId pose = state.add({"pose", Chart::kSE2, 3, WorldRole::kPose},
+                                   Eigen::Vector3d::Zero(), Eigen::Matrix3d::Zero());
     const Eigen::VectorXd x0 = random_matrix(3, 1, random);
     const Eigen::MatrixXd p0 = random_covariance(3, random);
     const BlockId x = state.add(kVector3, x0, p0);
@@ -54,21 +55,20 @@ TEST(Ekf, CorrectionIsTheKalmanFilterOnALinearProblem) {
 TEST(Ekf, JointAndSequentialCorrectionsAgreeOnALinearProblem) {
   std::mt19937_64 random(52);
   GaussianState joint;
-  const BlockId pose = joint.add({"pose", Chart::kSE2, 3, WorldRole::kPose}, Eigen::Vector3d::Zero(),
-                                 Eigen::Matrix3d::Zero());
+  const BlockId pose = joint.add({"pose", Chart::kSE2, 3, WorldRole::kPose},
+                                 Eigen::Vector3d::Zero(), Eigen::Matrix3d::Zero());
   const BlockId x = joint.add(kVector3, random_matrix(3, 1, random), random_covariance(3, random));
   GaussianState sequential = joint;
   const Eigen::VectorXd before = joint.estimate(x);
   Ekf ekf(make_error_frame("standard"));
   std::vector<LinearizedMeasurement> measurements;
   for (int i = 0; i < 3; ++i)
-    measurements.push_back(linear_measurement(x, random_matrix(2, 3, random), random_matrix(2, 1, random),
-                                              random_covariance(2, random)));
+    measurements.push_back(linear_measurement(
+        x, random_matrix(2, 3, random), random_matrix(2, 1, random), random_covariance(2, random)));
   ekf.correct(joint, pose, measurements);
   for (LinearizedMeasurement measurement : measurements) {
     // The innovation was taken at `before`; h is linear.
-    measurement.innovation -=
-        measurement.wrt.begin()->jacobian * (sequential.estimate(x) - before);
+    measurement.innovation -= measurement.wrt.begin()->jacobian * (sequential.estimate(x) - before);
     ekf.correct(sequential, pose, std::span(&measurement, 1));
   }
   EXPECT_LT((joint.estimate(x) - sequential.estimate(x)).norm(), 1e-12);
@@ -78,8 +78,9 @@ TEST(Ekf, JointAndSequentialCorrectionsAgreeOnALinearProblem) {
 TEST(Ekf, AnIndefiniteInnovationCovarianceLeavesTheStateAlone) {
   GaussianState state;
   const BlockId x = state.add(kVector3, Eigen::Vector3d(1, 2, 3), Eigen::Matrix3d::Identity());
-  const LinearizedMeasurement bad = linear_measurement(
-      x, Eigen::MatrixXd::Identity(1, 3), Eigen::VectorXd::Ones(1), -5.0 * Eigen::MatrixXd::Ones(1, 1));
+  const LinearizedMeasurement bad =
+      linear_measurement(x, Eigen::MatrixXd::Identity(1, 3), Eigen::VectorXd::Ones(1),
+                         -5.0 * Eigen::MatrixXd::Ones(1, 1));
   Ekf ekf(make_error_frame("standard"));
   EXPECT_FALSE(ekf.correct(state, x, std::span(&bad, 1)).applied);
   EXPECT_TRUE(std::isinf(ekf.innovate(state, bad).mahalanobis2));
@@ -91,8 +92,8 @@ TEST(Ekf, NamesTheBlockWhoseJacobianDoesNotFit) {
   GaussianState state;
   const BlockId x = state.add(kVector3, Eigen::Vector3d::Zero(), Eigen::Matrix3d::Identity());
   Ekf ekf(make_error_frame("standard"));
-  const LinearizedMeasurement wrong = linear_measurement(x, Eigen::MatrixXd::Ones(2, 2),
-                                                         Eigen::Vector2d::Zero(), Eigen::Matrix2d::Identity());
+  const LinearizedMeasurement wrong = linear_measurement(
+      x, Eigen::MatrixXd::Ones(2, 2), Eigen::Vector2d::Zero(), Eigen::Matrix2d::Identity());
   try {
     ekf.correct(state, x, std::span(&wrong, 1));
     FAIL() << "a 2 x 2 Jacobian of a block of size 3 must be refused";

@@ -1,11 +1,12 @@
-#include <gtest/gtest.h>
-
-#include <Eigen/Dense>
-#include <libslam/measurement/range_bearing.hpp>
 #include <numbers>
 #include <random>
 #include <tests/support/numeric_jacobian.hpp>
 #include <vector>
+
+#include <Eigen/Dense>
+#include <gtest/gtest.h>
+
+#include <libslam/measurement/range_bearing.hpp>
 
 using namespace libslam;
 using libslam::testing::numeric_jacobian;
@@ -73,8 +74,9 @@ TEST(RangeBearing, JacobiansAreTheNumericOnesInEveryRegime) {
       return model.predict(state, scene.pose, scene.landmark, scene.feature);
     };
     for (const auto& [block, jacobian] : measurement.wrt)
-      EXPECT_LT((jacobian - numeric_jacobian(scene.state, block, predict, wrapped_difference)).norm(),
-                kTolerance * (1.0 + jacobian.norm()));
+      EXPECT_LT(
+          (jacobian - numeric_jacobian(scene.state, block, predict, wrapped_difference)).norm(),
+          kTolerance * (1.0 + jacobian.norm()));
   }
 }
 
@@ -92,8 +94,9 @@ TEST(RangeBearing, InitializationInvertsThePredictionAndItsJacobianIsTheNumericO
       return moved.estimate;
     };
     const auto& by_pose = initialization.wrt.begin()->jacobian;
-    EXPECT_LT((by_pose - numeric_jacobian(scene.state, scene.pose, place, model.landmark_spec())).norm(),
-              kTolerance * (1.0 + by_pose.norm()));
+    EXPECT_LT(
+        (by_pose - numeric_jacobian(scene.state, scene.pose, place, model.landmark_spec())).norm(),
+        kTolerance * (1.0 + by_pose.norm()));
     const Eigen::MatrixXd by_z = numeric_jacobian(scene.feature.z, [&](const Eigen::VectorXd& z) {
       Feature feature = scene.feature;
       feature.z = z;
@@ -101,7 +104,8 @@ TEST(RangeBearing, InitializationInvertsThePredictionAndItsJacobianIsTheNumericO
       model.initialize(scene.state, scene.pose, feature, moved);
       return Eigen::VectorXd(moved.estimate);
     });
-    EXPECT_LT((initialization.cov_noise - by_z * scene.feature.cov * by_z.transpose()).norm(), 1e-7);
+    EXPECT_LT((initialization.cov_noise - by_z * scene.feature.cov * by_z.transpose()).norm(),
+              1e-7);
   }
 }
 
@@ -114,8 +118,8 @@ TEST(RangeBearing, InnovationIsWrappedAcrossPi) {
   EXPECT_NEAR(measurement.innovation[0], 0.0, 1e-12);
 }
 
-// First and second moments of an initialized landmark under small noise; the bounds are five standard
-// errors of 20000 samples plus the second-order terms of a 1 % noise.
+// First and second moments of an initialized landmark under small noise; the bounds are five
+// standard errors of 20000 samples plus the second-order terms of a 1 % noise.
 TEST(RangeBearing, SampledMomentsMatchTheLinearization) {
   std::mt19937_64 random(72);
   std::normal_distribution<double> normal;
@@ -135,8 +139,9 @@ TEST(RangeBearing, SampledMomentsMatchTheLinearization) {
   Eigen::Matrix2d outer = Eigen::Matrix2d::Zero();
   for (int i = 0; i < kSamples; ++i) {
     GaussianState moved = scene.state;
-    moved.set_estimate(scene.pose, mean_pose + kSigmaPose * Eigen::Vector3d(normal(random), normal(random),
-                                                                           normal(random)));
+    moved.set_estimate(
+        scene.pose,
+        mean_pose + kSigmaPose * Eigen::Vector3d(normal(random), normal(random), normal(random)));
     Feature feature = scene.feature;
     feature.z += Eigen::Vector2d(kSigmaRange * normal(random), kSigmaBearing * normal(random));
     Initialization sample;

@@ -1,17 +1,19 @@
+#include <random>
+
 #include <gtest/gtest.h>
 
 #include <libslam/policy/excitation.hpp>
-#include <random>
 
 using namespace libslam;
 
 namespace {
 
-constexpr double kStep = 0.1;        // [s]
-constexpr double kSigma = 0.02;      // odometry noise per step, forward and turn
+constexpr double kStep = 0.1;    // [s]
+constexpr double kSigma = 0.02;  // odometry noise per step, forward and turn
 
-/// A drive that moves `forward` and turns `turn` per step, both measured with noise; parameter 0 scales
-/// the forward motion, parameter 1 the turn. Returns the steps at which the turn counted as excited.
+/// A drive that moves `forward` and turns `turn` per step, both measured with noise; parameter 0
+/// scales the forward motion, parameter 1 the turn. Returns the steps at which the turn counted as
+/// excited.
 int excited_steps(double forward, double turn, unsigned seed, int steps, int* forward_steps) {
   std::mt19937_64 random(seed);
   std::normal_distribution<double> normal(0.0, kSigma);

@@ -1,7 +1,8 @@
+#include <stdexcept>
+
 #include <gtest/gtest.h>
 
 #include <libslam/policy/update_schedule.hpp>
-#include <stdexcept>
 
 using namespace libslam;
 

@@ -1,13 +1,15 @@
-// A filter step in steady state allocates nothing: counted at malloc, which operator new and Eigen use.
-
-#include <gtest/gtest.h>
+// A filter step in steady state allocates nothing: counted at malloc, which operator new and Eigen
+// use.
 
 #include <atomic>
 #include <cstdlib>
-#include <libslam/filter/ekf.hpp>
-#include <libslam/measurement/range_bearing.hpp>
 #include <random>
 #include <vector>
+
+#include <gtest/gtest.h>
+
+#include <libslam/filter/ekf.hpp>
+#include <libslam/measurement/range_bearing.hpp>
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 #define LIBSLAM_COUNTS_MALLOC 0
@@ -21,8 +23,8 @@ std::atomic<long> g_allocations{0};
 }  // namespace
 
 extern "C" {
-void* __libc_malloc(std::size_t size);                     // NOLINT(bugprone-reserved-identifier)
-void* malloc(std::size_t size) noexcept {                  // counts, then glibc's own
+void* __libc_malloc(std::size_t size);     // NOLINT(bugprone-reserved-identifier)
+void* malloc(std::size_t size) noexcept {  // counts, then glibc's own
   g_allocations.fetch_add(1, std::memory_order_relaxed);
   return __libc_malloc(size);
 }
@@ -39,8 +41,8 @@ TEST(Allocation, PropagateInnovateCorrectAreFreeOfItInSteadyState) {
     std::mt19937_64 random(41);
     std::uniform_real_distribution<double> uniform(-20.0, 20.0);
     GaussianState state;
-    const BlockId pose = state.add({"pose", Chart::kSE2, 3, WorldRole::kPose}, Eigen::Vector3d::Zero(),
-                                   1e-4 * Eigen::Matrix3d::Identity());
+    const BlockId pose = state.add({"pose", Chart::kSE2, 3, WorldRole::kPose},
+                                   Eigen::Vector3d::Zero(), 1e-4 * Eigen::Matrix3d::Identity());
     const RangeBearing model;
     Feature feature;
     feature.cov = 1e-2 * Eigen::Matrix2d::Identity();

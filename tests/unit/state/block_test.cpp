@@ -1,19 +1,20 @@
+#include <cmath>
+#include <numbers>
+
+#include <Eigen/Geometry>
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
 #include <rapidcheck/gtest.h>
 
-#include <Eigen/Geometry>
-#include <cmath>
 #include <libslam/state/block.hpp>
 #include <libslam/state/chi_square.hpp>
-#include <numbers>
 
 using namespace libslam;
 
 namespace {
 
-const BlockSpec kSpecs[] = {{"v", Chart::kVector, 3}, {"a", Chart::kAngle}, {"p", Chart::kSE2},
-                            {"q", Chart::kSE3}};
+const BlockSpec kSpecs[] = {
+    {"v", Chart::kVector, 3}, {"a", Chart::kAngle}, {"p", Chart::kSE2}, {"q", Chart::kSE3}};
 
 Eigen::VectorXd identity_of(const BlockSpec& spec) {
   Eigen::VectorXd x = Eigen::VectorXd::Zero(storage_dimension(spec));
@@ -21,7 +22,9 @@ Eigen::VectorXd identity_of(const BlockSpec& spec) {
   return x;
 }
 
-double draw(double scale) { return scale * (*rc::gen::inRange(-1000000, 1000001)) * 1e-6; }
+double draw(double scale) {
+  return scale * (*rc::gen::inRange(-1000000, 1000001)) * 1e-6;
+}
 
 }  // namespace
 

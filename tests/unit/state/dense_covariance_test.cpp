@@ -1,13 +1,14 @@
 // Every operation of the store against the same operation written with full matrices.
 
-#include <gtest/gtest.h>
-
-#include <Eigen/Dense>
-#include <libslam/state/dense_covariance.hpp>
-#include <libslam/state/symmetric_kernel.hpp>
 #include <random>
 #include <tests/support/random_matrix.hpp>
 #include <vector>
+
+#include <Eigen/Dense>
+#include <gtest/gtest.h>
+
+#include <libslam/state/dense_covariance.hpp>
+#include <libslam/state/symmetric_kernel.hpp>
 
 using namespace libslam;
 using libslam::testing::random_covariance;
@@ -48,7 +49,8 @@ double error(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
 }  // namespace
 
 class DenseCovarianceSizes : public ::testing::TestWithParam<int> {};
-INSTANTIATE_TEST_SUITE_P(AroundTheTiles, DenseCovarianceSizes, ::testing::Values(5, 15, 16, 17, 33, 80));
+INSTANTIATE_TEST_SUITE_P(AroundTheTiles, DenseCovarianceSizes,
+                         ::testing::Values(5, 15, 16, 17, 33, 80));
 
 TEST_P(DenseCovarianceSizes, AugmentBuildsAnyCovariance) {
   std::mt19937_64 random(11);
@@ -104,8 +106,8 @@ TEST_P(DenseCovarianceSizes, ConsideredCoordinatesDoNotLearn) {
   const Eigen::MatrixXd joseph = i_kh * store.full * i_kh.transpose() + k * r * k.transpose();
   const Eigen::VectorXd nu = random_matrix(2, 1, random);
   Eigen::VectorXd dx(n);
-  store.dense.correct(std::vector<JacobianRows>{{0, 2, columns}}, s.llt().matrixL().toDenseMatrix(), nu,
-                      considered, dx);
+  store.dense.correct(std::vector<JacobianRows>{{0, 2, columns}}, s.llt().matrixL().toDenseMatrix(),
+                      nu, considered, dx);
   EXPECT_LT(error(store.matrix(), joseph), kRounding * 10);
   EXPECT_LT((dx - k * nu).cwiseAbs().maxCoeff(), kRounding * 10);
 }
@@ -121,7 +123,8 @@ TEST_P(DenseCovarianceSizes, PropagateMovesRowsAndColumns) {
   f.block(offset, n - 1, 2, 1) = by_last;
   Eigen::MatrixXd expected = f * store.full * f.transpose();
   expected.block(offset, offset, 2, 2) += q;
-  store.dense.propagate(offset, std::vector<PlacedJacobian>{{offset, by_self}, {n - 1, by_last}}, q);
+  store.dense.propagate(offset, std::vector<PlacedJacobian>{{offset, by_self}, {n - 1, by_last}},
+                        q);
   EXPECT_LT(error(store.matrix(), expected), kRounding * 10);
 }
 

@@ -1,10 +1,11 @@
-#include <gtest/gtest.h>
-
-#include <Eigen/Dense>
-#include <libslam/state/error_frame.hpp>
 #include <random>
 #include <tests/support/random_matrix.hpp>
 #include <unsupported/Eigen/MatrixFunctions>
+
+#include <Eigen/Dense>
+#include <gtest/gtest.h>
+
+#include <libslam/state/error_frame.hpp>
 
 using namespace libslam;
 using libslam::testing::random_covariance;
@@ -40,7 +41,9 @@ World make_world(std::mt19937_64& random) {
   return world;
 }
 
-Eigen::Matrix2d quarter_turn() { return (Eigen::Matrix2d() << 0, -1, 1, 0).finished(); }
+Eigen::Matrix2d quarter_turn() {
+  return (Eigen::Matrix2d() << 0, -1, 1, 0).finished();
+}
 
 /// delta = T(x) xi, written out from the definition in the header.
 Eigen::MatrixXd chart_change(const GaussianState& state) {

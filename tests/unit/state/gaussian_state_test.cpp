@@ -1,8 +1,9 @@
+#include <random>
+#include <tests/support/random_matrix.hpp>
+
 #include <gtest/gtest.h>
 
 #include <libslam/state/gaussian_state.hpp>
-#include <random>
-#include <tests/support/random_matrix.hpp>
 
 using namespace libslam;
 using libslam::testing::random_covariance;
@@ -42,7 +43,8 @@ TEST(GaussianState, AugmentGivesTheCovarianceOfALinearFunction) {
   point.cov_noise = random_covariance(2, random);
   const BlockId landmark = state.augment(kPoint, point);
   EXPECT_LT((state.cross_covariance(landmark, pose) - g * p).norm(), 1e-13);
-  EXPECT_LT((state.covariance_of(landmark) - (g * p * g.transpose() + point.cov_noise)).norm(), 1e-13);
+  EXPECT_LT((state.covariance_of(landmark) - (g * p * g.transpose() + point.cov_noise)).norm(),
+            1e-13);
   EXPECT_EQ(state.estimate(landmark), Eigen::Vector2d(4, 5));
 }
 

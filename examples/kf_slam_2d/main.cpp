@@ -7,6 +7,7 @@
 // INI is a file of MRPT's kf-slam; for libslam it may have sections [libslam.*] as well.
 // Prints "x y phi landmarks" at the end, in m and rad.
 
+#include <cstdint>
 #include <cstdio>
 #include <exception>
 #include <map>
@@ -39,13 +40,17 @@ void play(const char* rawlog, Slam& slam) {
   mrpt::io::CFileGZInputStream file(rawlog);
   auto archive = mrpt::serialization::archiveFrom(file);
   auto action = mrpt::obs::CActionCollection::Create();
-  while (!file.checkEOF()) {
-    const auto object = archive.ReadObject();
-    if (auto read = std::dynamic_pointer_cast<mrpt::obs::CActionCollection>(object)) action = read;
-    if (auto frame = std::dynamic_pointer_cast<mrpt::obs::CSensoryFrame>(object)) {
-      slam.processActionObservation(action, frame);
-      action = mrpt::obs::CActionCollection::Create();
+  try {
+    while (const auto object = archive.ReadObject()) {
+      if (auto frame = std::dynamic_pointer_cast<mrpt::obs::CSensoryFrame>(object)) {
+        slam.processActionObservation(action, frame);
+        action = mrpt::obs::CActionCollection::Create();
+      } else if (auto read = std::dynamic_pointer_cast<mrpt::obs::CActionCollection>(object)) {
+        action = read;
+      }
     }
+  } catch (const mrpt::serialization::CExceptionEOF&) {
+    // The log ends here.
   }
 }
 

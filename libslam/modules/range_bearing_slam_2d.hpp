@@ -30,6 +30,7 @@
 
 #include <mrpt/config/CLoadableOptions.h>
 #include <mrpt/math/CVectorDynamic.h>
+#include <mrpt/math/TPoint2D.h>
 #include <mrpt/math/math_frwds.h>
 #include <mrpt/poses/poses_frwds.h>
 #include <mrpt/system/COutputLogger.h>
@@ -74,7 +75,7 @@ class RangeBearingSlam2D : public mrpt::system::COutputLogger {
                        std::vector<mrpt::math::TPoint2D>& out_landmarksPositions,
                        std::map<unsigned int, std::int64_t>& out_landmarkIDs,
                        mrpt::math::CVectorDouble& out_fullState,
-                       mrpt::math::CMatrixDouble& out_fullCovariance) const;
+                       mrpt::math::CMatrixDynamic<double>& out_fullCovariance) const;
   void getCurrentRobotPose(mrpt::poses::CPosePDFGaussian& out_robotPose) const;
   /// The calibration parameters that `options.parameters.calibration` enables.
   std::vector<CalibrationValue> getCurrentCalibration() const;

@@ -60,6 +60,10 @@ void assign_from_ini(Parameters& parameters, const std::string& name, const std:
   assign_parameter(parameters, name, value);
 }
 
+std::string place(const std::string& section, const std::string& key) {
+  return std::string("[").append(section).append("] ").append(key).append(": ");
+}
+
 void load_parameters(const CConfigFileBase& source, Parameters& parameters) {
   std::vector<std::string> sections, keys;
   source.getAllSections(sections);
@@ -71,7 +75,7 @@ void load_parameters(const CConfigFileBase& source, Parameters& parameters) {
       try {
         assign_from_ini(parameters, section.substr(kPrefix.size()) + "." + key, value);
       } catch (const ConfigError& error) {
-        throw ConfigError("[" + section + "] " + key + ": " + error.what());
+        throw ConfigError(place(section, key) + error.what());
       }
     }
   }
@@ -95,7 +99,7 @@ void RangeBearingSlam2D::TOptions::loadFromConfigFile(const CConfigFileBase& sou
     stds[0] = stds[1] = source.read_float(section, "stdXY_no_odo", stds[0]);
   stds[2] = source.read_float(section, "stdPhi_no_odo_deg", RAD2DEG(stds[2]));
   source.read_vector(section, "stds_Q_no_odo", stds, stds);
-  if (stds.size() != 3) throw ConfigError("[" + section + "] stds_Q_no_odo: takes x y phi_deg");
+  if (stds.size() != 3) throw ConfigError(place(section, "stds_Q_no_odo") + "takes x y phi_deg");
   stds[2] = DEG2RAD(stds[2]);
   if (source.read_bool(section, "force_ignore_odometry", false)) parameters.input.odometry = "none";
 

@@ -36,5 +36,6 @@ TEST(Mrclam, ASisterDataSetWithBarriers) {
         run_imported("mrclam.yaml", import_mrclam(directory, robot), scratch.path() / "run");
     ASSERT_TRUE(run.summary.truth && run.summary.truth->map) << "robot " << robot;
     EXPECT_EQ(run.summary.truth->map->matched, 15) << "robot " << robot;
+    EXPECT_LE(*run.summary.truth->map->rmse_aligned_m, 0.3) << "robot " << robot;
   }
 }

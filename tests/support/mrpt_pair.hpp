@@ -1,7 +1,8 @@
 #pragma once
 // Simulated steps as the objects that MRPT's filters take.
 
-#include <cmath>
+#include <cstdint>
+#include <numbers>
 #include <vector>
 
 #include <Eigen/Dense>  // before any use of asEigen()
@@ -40,7 +41,7 @@ inline mrpt::obs::CSensoryFrame::Ptr make_frame(const std::vector<Feature>& feat
   observation->setSensorPose(
       mrpt::poses::CPose3D(T_robot_sensor[0], T_robot_sensor[1], 0.0, T_robot_sensor[2], 0.0, 0.0));
   observation->maxSensorDistance = 100.0F;
-  observation->fieldOfView_yaw = static_cast<float>(2.0 * M_PI);
+  observation->fieldOfView_yaw = static_cast<float>(2.0 * std::numbers::pi);
   for (const Feature& feature : features) {
     auto& sighting = observation->sensedData.emplace_back();
     sighting.range = static_cast<float>(feature.z[0]);

@@ -1,5 +1,4 @@
 #include <cmath>
-#include <cstdio>
 #include <fstream>
 #include <limits>
 #include <map>
@@ -214,15 +213,19 @@ TEST(RangeBearingSlam2d, CalibratesFalsifiedOdometry) {
   const double truth[] = {1.04, 0.98};
   for (std::size_t i = 0; i < 2; ++i) {
     EXPECT_TRUE(found[i].observable) << found[i].name;
-    EXPECT_LT(found[i].sigma, 0.01) << found[i].name;
+    EXPECT_LT(found[i].sigma, 0.003) << found[i].name;
     EXPECT_NEAR(found[i].mean, truth[i], 4.0 * found[i].sigma) << found[i].name;
   }
-  const auto error = [&](const RangeBearingSlam2D& slam) {
+  // Squared Mahalanobis distance of the pose from the truth; .9999 of chi-square with 3 degrees of
+  // freedom is 21.1.
+  const auto nees = [&](const RangeBearingSlam2D& slam) {
     const Snapshot state(slam);
-    return std::hypot(state.pose.mean.x() - world.pose[0], state.pose.mean.y() - world.pose[1]);
+    Eigen::Vector3d error = state.mean.asEigen().head<3>() - world.pose;
+    error[2] = wrap_angle(error[2]);
+    return error.dot(state.pose.cov.asEigen().ldlt().solve(error));
   };
-  EXPECT_LT(error(calibrated), 0.1);
-  std::printf("position error: calibrated %.3f m, plain %.3f m\n", error(calibrated), error(plain));
+  EXPECT_LT(nees(calibrated), 21.1);
+  EXPECT_GT(nees(plain), 21.1);
   // Calibration is no part of what MRPT's callers get.
   const Snapshot state(calibrated);
   EXPECT_EQ(state.mean.size(), static_cast<int>(3 + 2 * state.landmarks.size()));
@@ -236,6 +239,7 @@ class LoggedSlam2d : public ::testing::Test {
   LoggedSlam2d() {
     slam_.logging_enable_console_output = false;
     slam_.logging_enable_keep_record = true;
+    slam_.setMinLoggingLevel(mrpt::system::LVL_DEBUG);
   }
   bool logged(std::string_view text) {
     std::string all;

@@ -149,6 +149,21 @@ void report(const RunSummary& summary, const fs::path& directory, Console& conso
   console.say((fs::exists(page) ? "report: " + page.string() : "results: " + directory.string()));
 }
 
+/// What --verbose adds: where the time went and how the innovations behaved.
+void report_details(const RunSummary& summary, Console& console) {
+  const auto& input = summary.input;
+  console.say("  log: " + std::to_string(input.entries) + " entries, " +
+              std::to_string(input.observations) + " observations, " + number(input.duration_s) +
+              " s; " + std::to_string(input.skipped) + " skipped, " +
+              std::to_string(input.repaired) + " repaired");
+  if (summary.health.nis_mean)
+    console.say("  NIS per degree of freedom: " + number(*summary.health.nis_mean) + " (ideal 1)");
+  if (summary.health.gated_fraction)
+    console.say("  gated: " + number(100.0 * *summary.health.gated_fraction) + " %");
+  for (const auto& [phase, seconds] : summary.timing.phases)
+    console.say("  " + phase + ": " + number(seconds) + " s");
+}
+
 int run(Arguments arguments) {
   Console console(arguments.quiet);
   Job job = load(arguments);
@@ -175,6 +190,7 @@ int run(Arguments arguments) {
   const RunSummary summary = run_rawlog(request);
   console.clear_progress();
   report(summary, request.directory, console);
+  if (arguments.verbose) report_details(summary, console);
   console.save(request.directory / "log.txt");
   return summary.exit_code;
 }

@@ -52,23 +52,15 @@ void RangeBearingSlam2D::processActionObservation(
     std::shared_ptr<mrpt::obs::CActionCollection>& action,
     std::shared_ptr<mrpt::obs::CSensoryFrame>& SF) {
   if (impl_->steps == 0) {
-    start();
+    start();  // with the options as they are now
     warn_about_options();
   }
-  Impl& impl = *impl_;
-  const std::int64_t index = impl.steps++;
-  if (action) impl.assembler.add_action(action, index);
-  if (SF)
-    impl.assembler.add_frame(SF, index);
+  const LogStep step = impl_->assemble(action, SF);
+  const std::size_t known_landmarks = impl_->filter().registry().size();
+  if (!step.action && known_landmarks > 0)
+    impl_->pipeline.process_frame(step);  // it may have moved unseen
   else
-    impl.assembler.finish();
-  auto& ready = impl.assembler.ready();
-  const std::size_t known_landmarks = impl.filter().registry().size();
-  LogStep step;
-  if (!ready.empty()) step = std::exchange(ready.front(), {}), ready.clear();
-  step.index = index;
-  const bool moved_unseen = !step.action && known_landmarks > 0;
-  moved_unseen ? impl.pipeline.process_frame(step) : impl.pipeline.process(step);
+    impl_->pipeline.process(step);
   association_ = {};
   for (std::size_t i = 0; i < known_landmarks; ++i) association_.predictions_IDs.push_back(i);
   report_step();
@@ -118,11 +110,11 @@ void RangeBearingSlam2D::getCurrentState(mrpt::poses::CPosePDFGaussian& out_robo
                                          mrpt::math::CMatrixDouble& out_fullCovariance) const {
   const EkfSlam& filter = impl_->filter();
   const auto landmarks = filter.registry().landmarks();
-  const auto size = static_cast<Eigen::Index>(3 + 2 * landmarks.size());
+  const std::size_t size = 3 + 2 * landmarks.size();
   getCurrentRobotPose(out_robotPose);
   out_landmarksPositions.clear();
   out_landmarkIDs.clear();
-  Eigen::VectorXd mean(size);
+  Eigen::VectorXd mean(static_cast<Eigen::Index>(size));
   mean.head<3>() = impl_->pose();
   unsigned int position = 0;
   for (const RegisteredLandmark& landmark : landmarks) {
@@ -133,9 +125,9 @@ void RangeBearingSlam2D::getCurrentState(mrpt::poses::CPosePDFGaussian& out_robo
     ++position;
   }
   const auto coordinates = mapping_coordinates(filter);
-  out_fullState.resize(static_cast<std::size_t>(size));
+  out_fullState.resize(size);
   out_fullState.asEigen() = mean;
-  out_fullCovariance.setSize(static_cast<int>(size), static_cast<int>(size));
+  out_fullCovariance.setSize(size, size);
   out_fullCovariance.asEigen() = filter.state().full_covariance()(coordinates, coordinates);
 }
 

@@ -9,16 +9,13 @@
 // between sightings and new landmarks. Where both differ:
 // - Motion before the first landmark counts; MRPT discards it. Only a pair without odometry adds no
 //   noise then, since the world is where the robot stands.
-// - Every CObservationBearingRange of a frame is used, MRPT takes the first; a frame without one is
-// a
-//   step of motion alone, where MRPT throws; measurements that are not finite or not positive are
-//   left out.
-// - A second observation of the same identity in one frame is dropped.
+// - Every CObservationBearingRange of a frame is used; MRPT takes the first. A frame without one is
+//   a step of motion alone, where MRPT throws. Measurements that are not finite or not positive
+//   are left out, and so is a second observation of one identity in a frame.
 // - Observations without identity: nearest neighbour, one-to-one, best d^2 + log|S| first, inside
-// the
-//   chi-square gate `data_assoc_IC_chi2_thres`; there is no JCBB and no gate by likelihood (a
-//   warning is logged if they are asked for).
-// - Options count from construction or reset() to the next reset(), as they are at the first pair.
+//   the chi-square gate `data_assoc_IC_chi2_thres`. There is no JCBB and no gate by likelihood; a
+//   warning is logged if they are asked for.
+// - Options count as they are at the first pair after construction or reset().
 
 #include <cstddef>
 #include <cstdint>

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -22,6 +23,21 @@ struct RangeBearingSlam2D::Impl {
   const EkfSlam& filter() const { return pipeline.filter(); }
   Eigen::Vector3d pose() const { return filter().state().estimate(filter().pose()); }
   Eigen::Matrix3d cov_pose() const { return filter().state().covariance_of(filter().pose()); }
+
+  /// The pair as a step with a time that can be trusted; both null: an empty step.
+  LogStep assemble(const mrpt::obs::CActionCollection::Ptr& action,
+                   const mrpt::obs::CSensoryFrame::Ptr& frame) {
+    if (action) assembler.add_action(action, steps);
+    if (frame)
+      assembler.add_frame(frame, steps);
+    else
+      assembler.finish();
+    LogStep step;
+    if (!assembler.ready().empty()) step = std::move(assembler.ready().front());
+    assembler.ready().clear();
+    step.index = steps++;
+    return step;
+  }
 
   Intake intake;
   PairAssembler assembler;

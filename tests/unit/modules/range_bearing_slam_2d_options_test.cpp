@@ -27,7 +27,7 @@ RangeBearingSlam2D::TOptions load(const std::string& text) {
 TEST(RangeBearingSlam2dOptions, DefaultsAreThoseOfMrpt) {
   const RangeBearingSlam2D::TOptions ours;
   const mrpt::slam::CRangeBearingKFSLAM2D::TOptions stock;
-  for (int i = 0; i < 3; ++i) EXPECT_EQ(ours.stds_Q_no_odo[i], stock.stds_Q_no_odo[i]);
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(ours.stds_Q_no_odo[i], stock.stds_Q_no_odo[i]);
   EXPECT_EQ(ours.std_sensor_range, stock.std_sensor_range);
   EXPECT_EQ(ours.std_sensor_yaw, stock.std_sensor_yaw);
   EXPECT_EQ(ours.quantiles_3D_representation, stock.quantiles_3D_representation);

@@ -41,7 +41,7 @@ TruthFiles truth_files_for(const RunSummary& summary, const Arguments& arguments
   if (summary.input.file) files = find_truth(*summary.input.file);
   if (!arguments.truth.empty()) {
     files.path = arguments.truth;
-    files.notes.clear();  // they belong to the path beside the log
+    files.notes_describe_path = false;
   }
   if (!arguments.truth_map.empty()) files.landmarks = arguments.truth_map;
   return files;

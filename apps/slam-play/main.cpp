@@ -201,5 +201,8 @@ int main(int argc, char** argv) {
   } catch (const InputError& error) {
     std::cerr << "slam-play: " << error.what() << '\n';
     return kInput;
+  } catch (const std::exception& error) {
+    std::cerr << "slam-play: " << error.what() << '\n';
+    return kCommandLine;
   }
 }

@@ -57,6 +57,7 @@ class Console {
     clear_progress();
     std::cerr << line << '\n';
   }
+  void log(const std::string& line) { log_ << line << '\n'; }
   void progress(double fraction) {
     const int percent = static_cast<int>(100.0 * fraction);
     if (quiet_ || !terminal_ || percent == shown_) return;
@@ -94,8 +95,8 @@ struct Job {
 Job load(Arguments& arguments) {
   Job job;
   const std::string extension = fs::path(arguments.config).extension();
-  if (arguments.rawlog.empty() && extension == ".rawlog")
-    std::swap(arguments.rawlog, arguments.config);
+  const bool is_config = extension == ".yaml" || extension == ".yml" || extension == ".ini";
+  if (arguments.rawlog.empty() && !is_config) std::swap(arguments.rawlog, arguments.config);
   if (extension == ".ini") {
     KfSlamIni ini = load_kf_slam_ini(arguments.config);
     job.parameters = ini.parameters;
@@ -111,7 +112,11 @@ Job load(Arguments& arguments) {
   if (!arguments.input_policy.empty())
     set_parameter(job.parameters, "input.policy=" + arguments.input_policy, &job.places);
   validate(job.parameters, job.places);
-  if (!arguments.rawlog.empty() && job.truth.path.empty()) job.truth = find_truth(arguments.rawlog);
+  const TruthFiles beside = arguments.rawlog.empty() ? TruthFiles{} : find_truth(arguments.rawlog);
+  job.truth.notes = beside.notes;
+  job.truth.notes_describe_path = job.truth.path.empty() && arguments.truth.empty();
+  if (job.truth.path.empty()) job.truth.path = beside.path;
+  if (job.truth.landmarks.empty()) job.truth.landmarks = beside.landmarks;
   if (!arguments.truth.empty()) job.truth.path = arguments.truth;
   if (!arguments.truth_map.empty()) job.truth.landmarks = arguments.truth_map;
   return job;
@@ -164,6 +169,17 @@ void report_details(const RunSummary& summary, Console& console) {
     console.say("  " + phase + ": " + number(seconds) + " s");
 }
 
+RunSummary run_and_log_failures(const RunRequest& request, Console& console) {
+  try {
+    return run_rawlog(request);
+  } catch (const std::exception& e) {
+    console.clear_progress();
+    console.log(std::string("slam-run: ") + e.what());
+    if (fs::exists(request.directory / "run.json")) console.save(request.directory / "log.txt");
+    throw;
+  }
+}
+
 int run(Arguments arguments) {
   Console console(arguments.quiet);
   Job job = load(arguments);
@@ -187,7 +203,7 @@ int run(Arguments arguments) {
   if (arguments.speed > 0.0) request.pacing = {PaceMode::kRealTime, arguments.speed, nullptr};
   request.stop = &g_stop;
   request.on_step = [&console](double fraction, const StepRecord&) { console.progress(fraction); };
-  const RunSummary summary = run_rawlog(request);
+  const RunSummary summary = run_and_log_failures(request, console);
   console.clear_progress();
   report(summary, request.directory, console);
   if (arguments.verbose) report_details(summary, console);
@@ -212,7 +228,8 @@ void add_options(CLI::App& app, Arguments& arguments) {
                  "Play at this multiple of real time; default: as fast as possible")
       ->check(CLI::PositiveNumber);
   app.add_option("--seed", arguments.seed, "Seed of random numbers; recorded in run.json");
-  app.add_option("--threads", arguments.threads, "Most threads to use")->check(CLI::PositiveNumber);
+  app.add_option("--threads", arguments.threads, "Most threads to use; this filter needs one")
+      ->check(CLI::PositiveNumber);
   app.add_flag("--print-config", arguments.print_config,
                "Print the effective configuration and stop");
   app.add_option("--help-config", arguments.help_config,

@@ -38,7 +38,7 @@ constexpr auto kRemarks = std::to_array<Remark>({
     {"SAVE_DA_LOG", kRunDirectory},
     {"SAVE_3D_SCENES", kRunDirectory},
     {"SAVE_MAP_REPRESENTATIONS", kRunDirectory},
-    {"SHOW_3D_LIVE", "--view opens the live view.", true},
+    {"SHOW_3D_LIVE", "there is no live view; report.html shows the run.", true},
     {"CAMERA_3DSCENE_FOLLOWS_ROBOT", kDisplay, true},
     // [RangeBearingKFSLAM_KalmanFilter]
     {"method", nullptr},

@@ -62,11 +62,13 @@ void check_input(const Parameters& p, Conflicts& conflicts) {
   if (p.input.odometry != "ticks") {
     return;
   }
-  if (p.motion.model != "differential") {
-    conflicts.push_back({{"input.odometry", "motion.model"},
-                         "encoder ticks of a left and a right wheel drive the differential model "
-                         "only, " +
-                             p.motion.model + " needs increments or velocities"});
+  const bool both_rear_wheels = p.motion.model == "ackermann" && p.motion.encoder_offset == 0.0;
+  if (p.motion.model != "differential" && !both_rear_wheels) {
+    conflicts.push_back(
+        {{"input.odometry", "motion.model"},
+         "encoder ticks of a left and a right wheel drive the differential model, or "
+         "ackermann with encoder_offset 0; " +
+             p.motion.model + " needs increments or velocities"});
     return;
   }
   for (const auto& [key, value] :

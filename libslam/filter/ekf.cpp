@@ -74,17 +74,16 @@ Index Ekf::stack(const GaussianState& state, std::span<const LinearizedMeasureme
     nu_.segment(row, rows) = measurement.innovation;
     row += rows;
   }
-  state.covariance().project(rows_, s_.topLeftCorner(m, m));
-  row = 0;
+  return m;
+}
+
+bool Ekf::factorize(std::span<const LinearizedMeasurement> measurements, Index m) {
+  Index row = 0;
   for (const auto& measurement : measurements) {
     const Index rows = measurement.innovation.size();
     s_.block(row, row, rows, rows) += measurement.cov;
     row += rows;
   }
-  return m;
-}
-
-bool Ekf::factorize(Index m) {
   Eigen::Ref<Eigen::MatrixXd> s = s_.topLeftCorner(m, m);
   return Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>>(s).info() == Eigen::Success;
 }
@@ -99,8 +98,10 @@ double Ekf::squared_distance(Index m) {
 }
 
 Innovation Ekf::innovate(const GaussianState& state, const LinearizedMeasurement& measurement) {
-  const Index m = stack(state, std::span(&measurement, 1));
-  if (!factorize(m)) return {std::numeric_limits<double>::infinity(), 0.0};
+  const std::span<const LinearizedMeasurement> alone(&measurement, 1);
+  const Index m = stack(state, alone);
+  state.covariance().project(rows_, s_.topLeftCorner(m, m));
+  if (!factorize(alone, m)) return {std::numeric_limits<double>::infinity(), 0.0};
   double log_det = 0.0;
   for (Index k = 0; k < m; ++k) log_det += 2.0 * std::log(s_(k, k));
   return {squared_distance(m), log_det};
@@ -111,16 +112,16 @@ Correction Ekf::correct(GaussianState& state, BlockId pose,
                         std::span<const BlockId> considered) {
   if (measurements.empty()) return {};
   const Index m = stack(state, measurements);
-  if (!factorize(m)) return {};
+  state.covariance().observe(rows_, s_.topLeftCorner(m, m));
+  if (!factorize(measurements, m)) return {};
   const double nis = squared_distance(m);
   const Index n = state.dimension();
   if (delta_.size() < n) delta_.resize(2 * n);
   considered_.clear();
   for (const BlockId block : considered)
     for (Index i = 0; i < state.size(block); ++i) considered_.push_back(state.offset(block) + i);
-  state.covariance().correct(rows_, s_.topLeftCorner(m, m), nu_.head(m), considered_,
-                             delta_.head(n));
-  frame_->retract(state, pose, delta_.head(n));
+  state.covariance().gain(s_.topLeftCorner(m, m), white_.head(m), considered_, delta_.head(n));
+  state.covariance().correct(frame_->retract(state, pose, delta_.head(n)));
   return {true, nis, static_cast<int>(m)};
 }
 

@@ -56,12 +56,13 @@ class Ekf {
                      std::span<const BlockId> considered = {});
 
  private:
-  /// Stacks rows_, s_ = H P H^T + R and nu_; returns the number of rows.
+  /// Stacks rows_ and nu_; returns the number of rows.
   Eigen::Index stack(const GaussianState& state,
                      std::span<const LinearizedMeasurement> measurements);
-  /// Cholesky factor of the leading m x m part of s_ in place; false if not positive definite.
-  bool factorize(Eigen::Index m);
-  /// nu^T S^-1 nu from the factor in s_.
+  /// Adds R to H P H^T, the leading m x m part of s_, and puts the Cholesky factor of the sum in
+  /// its place; false if it is not positive definite.
+  bool factorize(std::span<const LinearizedMeasurement> measurements, Eigen::Index m);
+  /// nu^T S^-1 nu from the factor in s_; leaves L^-1 nu in white_.
   double squared_distance(Eigen::Index m);
 
   std::unique_ptr<ErrorFrame> frame_;

@@ -24,7 +24,7 @@ EkfSlamParts checked(EkfSlamParts parts) {
 std::vector<double> nominal_values(const MotionModel& motion) {
   std::vector<double> nominal;
   for (const auto& parameter : motion.calibration())
-    nominal.push_back(parameter.prior_mean == 0.0 ? 1.0 : parameter.prior_mean);
+    nominal.push_back(parameter.prior_mean == 0.0 ? parameter.prior_sigma : parameter.prior_mean);
   return nominal;
 }
 
@@ -158,6 +158,11 @@ UpdateOutcome EkfSlam::update(std::span<const Feature> features) {
       outcome.accepted = static_cast<int>(accepted_.size());
       outcome.nis = correction.nis;
       outcome.nis_dof = correction.dof;
+    } else {
+      // An innovation covariance that is not positive definite: nothing was used.
+      for (Verdict& verdict : verdicts_)
+        if (verdict.outcome == Outcome::kPaired) verdict.outcome = Outcome::kGated;
+      outcome.gated += static_cast<int>(accepted_.size());
     }
   }
   add_landmarks(features, outcome);
@@ -185,9 +190,10 @@ std::vector<CalibrationValue> EkfSlam::calibration() const {
   for (std::size_t i = 0; i < calibration_.size(); ++i) {
     const CalibrationSpec& parameter = parts_.motion->calibration()[i];
     const double sigma = std::sqrt(state_.covariance_of(calibration_[i])(0, 0));
-    values.push_back({parameter.name, state_.estimate(calibration_[i])[0], sigma,
-                      parameter.prior_mean, parameter.prior_sigma,
-                      sigma < kObservedRatio * parameter.prior_sigma});
+    values.push_back(
+        {parameter.name, state_.estimate(calibration_[i])[0], sigma, parameter.prior_mean,
+         parameter.prior_sigma,
+         excitation_.ever_excited(i) && sigma < kObservedRatio * parameter.prior_sigma});
   }
   return values;
 }
@@ -207,7 +213,11 @@ std::vector<LandmarkEstimate> EkfSlam::landmarks(bool with_provisional) const {
 bool EkfSlam::healthy() const {
   const auto pose = state_.estimate(pose_);
   const Eigen::Vector3d variances = state_.covariance_of(pose_).diagonal();
-  return pose.allFinite() && variances.allFinite() && (variances.array() >= 0.0).all();
+  bool healthy = pose.allFinite() && variances.allFinite() && (variances.array() >= 0.0).all();
+  for (const BlockId block : calibration_)
+    healthy = healthy && state_.estimate(block).allFinite() &&
+              state_.covariance_of(block)(0, 0) >= 0.0 && state_.covariance_of(block).allFinite();
+  return healthy;
 }
 
 }  // namespace libslam

@@ -145,8 +145,8 @@ std::optional<MotionAction> OdometryReader::read(const LogStep& step) {
   if (is_present(movement->has_ticks, step.index, ticks_)) action.ticks = movement->ticks;
   check_covariance(step.index, action);
   check_fields(step.index, action);
-  select(step.index, velocities_, Choice::kVelocities, "velocities", action.velocity);
-  select(step.index, ticks_, Choice::kTicks, "ticks", action.ticks);
+  select(step.index, velocities_, Choice::kVelocities, "velocities", action.velocity, action.dt);
+  select(step.index, ticks_, Choice::kTicks, "ticks", action.ticks, 1.0);
   return action;
 }
 
@@ -177,10 +177,10 @@ void OdometryReader::check_fields(std::int64_t step, MotionAction& action) {
 
 template <class Field>
 void OdometryReader::select(std::int64_t step, const FieldCheck& check, Choice own,
-                            const char* name, std::optional<Field>& field) const {
+                            const char* name, std::optional<Field>& field, double dt) const {
   if (choice_ == own) {
     const bool insane = check.verdict() == FieldVerdict::kInsane;
-    if (field && !insane) return;
+    if ((field || dt == 0.0) && !insane) return;  // without an interval the increment serves
     throw std::invalid_argument(
         std::string("input.odometry: the log's ") + name + " cannot be used: " +
         (insane ? check.reason() : "step " + std::to_string(step) + " has none"));

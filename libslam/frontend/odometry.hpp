@@ -60,10 +60,11 @@ class OdometryReader {
 
   void check_covariance(std::int64_t step, MotionAction& action);
   void check_fields(std::int64_t step, MotionAction& action);
-  /// Applies the table above to one optional field.
+  /// Applies the table above to one optional field; a field that needs an interval may be absent
+  /// where `dt` is 0.
   template <class Field>
   void select(std::int64_t step, const FieldCheck& check, Choice own, const char* name,
-              std::optional<Field>& field) const;
+              std::optional<Field>& field, double dt) const;
 
   Choice choice_;
   bool strict_;

@@ -36,10 +36,11 @@ MeasurementMatrix noise_of(const Observation& observation,
 
 RangeBearingObservation::RangeBearingObservation(const FrontendParameters& frontend,
                                                  const MeasurementParameters& measurement,
-                                                 std::string sensor_label)
+                                                 std::string sensor_label, bool with_identities)
     : frontend_(frontend),
       configured_(diagonal(measurement.sigma_range, measurement.sigma_bearing_deg * kPi / 180.0)),
       only_configured_(measurement.noise == "configured"),
+      with_identities_(with_identities),
       sensor_label_(std::move(sensor_label)) {}
 
 void RangeBearingObservation::extract(const mrpt::obs::CSensoryFrame& frame,
@@ -60,7 +61,8 @@ void RangeBearingObservation::extract(const mrpt::obs::CSensoryFrame& frame,
       }
       if (range < frontend_.min_range || range > frontend_.max_range) continue;
       Feature& feature = batch.emplace_back();
-      feature.id = measured.landmarkID < 0 ? kNoIdentity : measured.landmarkID;
+      const bool identified = with_identities_ && measured.landmarkID >= 0;
+      feature.id = identified ? measured.landmarkID : kNoIdentity;
       feature.z = Eigen::Vector2d(range, measured.yaw);
       feature.cov = only_configured_ ? configured_ : noise_of(*observation, measured, configured_);
       feature.T_robot_sensor = {on_robot.x(), on_robot.y(), on_robot.yaw()};

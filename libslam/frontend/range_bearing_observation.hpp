@@ -16,15 +16,17 @@ namespace libslam {
 /// the sensor's pose contributes x, y and yaw.
 class RangeBearingObservation final : public Frontend {
  public:
+  /// `with_identities` false: features carry none, whatever the log says.
   RangeBearingObservation(const FrontendParameters& frontend,
-                          const MeasurementParameters& measurement, std::string sensor_label);
+                          const MeasurementParameters& measurement, std::string sensor_label,
+                          bool with_identities);
   void extract(const mrpt::obs::CSensoryFrame& frame, std::vector<FeatureBatch>& batches) override;
   std::int64_t unusable() const override { return unusable_; }
 
  private:
   FrontendParameters frontend_;
   MeasurementMatrix configured_;
-  bool only_configured_;
+  bool only_configured_, with_identities_;
   std::string sensor_label_;
   std::int64_t unusable_ = 0;
 };

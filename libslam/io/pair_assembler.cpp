@@ -133,8 +133,8 @@ void PairAssembler::emit(const mrpt::obs::CSensoryFrame::Ptr& frame, std::int64_
   if (frame) stamp = first_stamp(*frame);
   if (!stamp && waiting_) stamp = first_stamp(*waiting_);
   step.time = place(stamp, entry);
-  if (stamp && motion_time_ && waiting_) step.dt = std::max(0.0, *stamp - *motion_time_);
-  motion_time_ = stamp;
+  if (stamp && motion_time_ && waiting_) step.dt = std::max(0.0, step.time - *motion_time_);
+  if (stamp) motion_time_ = step.time;
   step.action = std::exchange(waiting_, nullptr);
   step.has_motion_covariance = step.action && has_covariance(*step.action);
   step.frame = frame;

@@ -42,7 +42,7 @@ class PairAssembler {
   std::int64_t waiting_entry_ = 0;
   double time_ = 0.0;  ///< of the last step
   bool any_step_ = false;
-  std::optional<double> motion_time_;  ///< stamp of the last step, if it had a valid one
+  std::optional<double> motion_time_;  ///< time of the last step that had a valid one
   std::deque<LogStep> ready_;
 };
 

@@ -123,9 +123,10 @@ GroundTruth read_truth(const TruthFiles& files) {
   if (!files.landmarks.empty()) truth.landmarks = read_true_landmarks(files.landmarks);
   if (!files.notes.empty()) {
     TruthNotes notes = read_truth_notes(files.notes);
+    truth.calibration = std::move(notes.calibration);
+    if (!files.notes_describe_path) return truth;
     truth.path.has_heading = notes.has_heading;
     truth.path.point_on_robot = notes.point_on_robot;
-    truth.calibration = std::move(notes.calibration);
     if (!notes.has_heading)
       for (auto& pose : truth.path.poses) pose.z() = 0.0;
   }

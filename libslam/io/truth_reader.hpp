@@ -36,6 +36,8 @@ TruthNotes read_truth_notes(const std::string& file);
 /// Where the truth of a log is; an empty name where there is none.
 struct TruthFiles {
   std::string path, landmarks, notes;
+  bool notes_describe_path =
+      true;  ///< false: `path` is another file than the notes were written for
 };
 
 /// The files that stand beside `rawlog` (X.rawlog): X.truth.tum, X.landmarks.csv, X.truth.json,

@@ -79,7 +79,8 @@ EkfSlamParts make_filter_parts(const Parameters& p) {
 std::unique_ptr<Frontend> make_frontend(const Parameters& p) {
   if (p.frontend.source == "range_bearing")
     return std::make_unique<RangeBearingObservation>(p.frontend, p.measurement,
-                                                     p.input.sensor_label);
+                                                     p.input.sensor_label,
+                                                     p.association.method != "nearest_neighbour");
   throw_unknown("front-end", p.frontend.source);
 }
 

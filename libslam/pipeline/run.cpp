@@ -1,4 +1,5 @@
 #include <chrono>
+#include <cmath>
 #include <exception>
 #include <sys/resource.h>
 #include <utility>
@@ -24,6 +25,9 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+/// Beyond this dimension an eigenvalue decomposition would take longer than the run.
+constexpr Eigen::Index kLargestSpectrum = 1500;
+
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
@@ -47,6 +51,10 @@ PlayerOptions player_options(const RunRequest& request) {
   PlayerOptions options;
   options.input = request.parameters.input;
   options.pacing = request.pacing;
+  options.pacing.before_step = [stop = request.stop,
+                                inner = request.pacing.before_step](const LogStep& step) {
+    return !(stop != nullptr && stop->load()) && (!inner || inner(step));
+  };
   return options;
 }
 
@@ -61,19 +69,21 @@ class Run {
     replace_file(request.directory / "config.yaml", to_yaml(request.parameters));
   }
 
-  /// Processes steps until the end; an exception of the log is kept, so that results are saved
-  /// first.
+  /// Processes steps until the end; an exception is kept, so that results are saved first.
   void play() {
     try {
-      while (!stopped() && exit_code_ == 0) {
-        auto step = player_.next();
-        if (!step) break;
+      while (exit_code_ == 0) {
+        if (stopped()) return end(7, "interrupted");
+        const auto step = player_.next();
+        if (!step) return stopped() ? end(7, "interrupted") : void();
         process(*step);
       }
-      if (stopped()) end(7, "interrupted");
+    } catch (const InputError&) {
+      fail(4, "input rejected");
+    } catch (const std::invalid_argument&) {
+      fail(3, "the configuration does not fit the log");
     } catch (...) {
-      failure_ = std::current_exception();
-      end(4, "input rejected");
+      fail(2, "failed");
     }
   }
 
@@ -112,6 +122,11 @@ class Run {
     status_ = status;
   }
 
+  void fail(int exit_code, const char* status) {
+    failure_ = std::current_exception();
+    end(exit_code, status);
+  }
+
   void process(const LogStep& step) {
     const Clock::time_point start = Clock::now();
     StepRecord record;
@@ -125,7 +140,7 @@ class Run {
       record = pipeline_.process_frame(step);
     }
     record.step_ms = 1e3 * seconds_since(start);
-    if (!pipeline_.filter().healthy()) {
+    if (!pipeline_.filter().healthy() || !std::isfinite(record.nis)) {
       end(6, "diverged");
       return;
     }
@@ -159,14 +174,24 @@ class Run {
     if (pipeline_.frontend().unusable() > 0)
       warnings.push_back(std::to_string(pipeline_.frontend().unusable()) +
                          " measurements left out: not finite or range not positive");
+    warn_of_idle_schedule(warnings);
     fill_timing(summary);
     const Eigen::MatrixXd cov = pipeline_.filter().state().full_covariance();
-    if (cov.allFinite())
+    if (cov.rows() <= kLargestSpectrum && cov.allFinite())
       summary.health.min_eigenvalue =
           Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(cov, Eigen::EigenvaluesOnly)
               .eigenvalues()
               .minCoeff();
     return summary;
+  }
+
+  /// An update period means nothing in a log without usable times.
+  void warn_of_idle_schedule(std::vector<std::string>& warnings) const {
+    const double period = request_.parameters.policies.update_period_s;
+    const InputSummary& input = player_.summary();
+    if (period > 0.0 && input.observations > 10 && input.duration_s < period)
+      warnings.push_back("policies.update_period_s is longer than the whole log: its times span " +
+                         std::to_string(input.duration_s) + " s; all but one frame were left out");
   }
 
   void fill_timing(RunSummary& summary) const {

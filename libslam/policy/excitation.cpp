@@ -8,7 +8,8 @@ Excitation::Excitation(std::vector<double> nominal)
     : nominal_(std::move(nominal)),
       jacobian_(Eigen::Matrix3Xd::Zero(3, static_cast<Eigen::Index>(nominal_.size()))),
       mean_snr_(Eigen::VectorXd::Zero(jacobian_.cols())),
-      excited_(nominal_.size(), false) {}
+      excited_(nominal_.size(), false),
+      ever_excited_(nominal_.size(), false) {}
 
 void Excitation::observe(const Eigen::Ref<const Eigen::Matrix3Xd>& jacobian,
                          const Eigen::Matrix3d& noise, double dt) {
@@ -26,7 +27,9 @@ void Excitation::close_window() {
     const Eigen::Vector3d scaled = nominal_[static_cast<std::size_t>(i)] * jacobian_.col(i);
     const double snr = factor.matrixL().solve(scaled).squaredNorm();
     mean_snr_[i] = kForgetting * mean_snr_[i] + (1.0 - kForgetting) * snr;
-    excited_[static_cast<std::size_t>(i)] = mean_snr_[i] > kThreshold;
+    const auto parameter = static_cast<std::size_t>(i);
+    excited_[parameter] = mean_snr_[i] > kThreshold;
+    ever_excited_[parameter] = ever_excited_[parameter] || excited_[parameter];
   }
   jacobian_.setZero();
   noise_.setZero();

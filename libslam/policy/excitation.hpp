@@ -32,6 +32,8 @@ class Excitation {
   void observe(const Eigen::Ref<const Eigen::Matrix3Xd>& jacobian, const Eigen::Matrix3d& noise,
                double dt);
   bool excited(std::size_t parameter) const { return excited_[parameter]; }
+  /// Excited at any time so far.
+  bool ever_excited(std::size_t parameter) const { return ever_excited_[parameter]; }
 
  private:
   void close_window();
@@ -41,7 +43,7 @@ class Excitation {
   Eigen::Matrix3d noise_ = Eigen::Matrix3d::Zero();
   double elapsed_ = 0.0;
   Eigen::VectorXd mean_snr_;
-  std::vector<bool> excited_;
+  std::vector<bool> excited_, ever_excited_;
 };
 
 }  // namespace libslam

@@ -2,8 +2,9 @@
 // The contract of covariance storage. A store owns the symmetric matrix P of the whole state and
 // the operations a filter needs; how it keeps P is its own affair.
 //
-// Given a symmetric positive semi-definite P, every operation leaves P symmetric; `correct` and
-// `remove` never allocate, the others only when the dimension grows beyond the reserved capacity.
+// Given a symmetric positive semi-definite P, every operation leaves P symmetric; `remove` never
+// allocates, the others only when the dimension grows beyond the reserved capacity or more rows are
+// observed at once than ever before.
 // Offsets and lengths are tangent coordinates. Every operation throws std::invalid_argument that
 // names the offending dimension.
 
@@ -29,6 +30,13 @@ struct JacobianRows {
   std::span<const PlacedJacobian> columns;
 };
 
+/// A change of the error that P describes: T = I + U E^T, E the unit columns of
+/// [offset, offset + U.cols()). No change if U has no columns.
+struct ChartChange {
+  Eigen::Index offset = 0;
+  Eigen::Map<const Eigen::MatrixXd> u{nullptr, 0, 0};  ///< state dimension x d, d <= kMaxTangent
+};
+
 class CovarianceStore {
  public:
   virtual ~CovarianceStore() = default;
@@ -49,20 +57,24 @@ class CovarianceStore {
   /// Removes the coordinates [offset, offset + size): marginalization.
   virtual void remove(Eigen::Index offset, Eigen::Index size) = 0;
 
-  /// out = H P H^T of the stacked rows, full symmetric matrix.
+  /// out = H P H^T of the stacked rows, full symmetric matrix. Meant for few rows.
   virtual void project(std::span<const JacobianRows> rows,
                        Eigen::Ref<Eigen::MatrixXd> out) const = 0;
-  /// Kalman correction with S = L L^T the covariance of the innovation nu of the stacked rows:
-  /// dx = P H^T S^-1 nu, P <- P - P H^T S^-1 H P. `lower` is L; nothing above its diagonal is read.
-  /// The coordinates in `considered` count with their uncertainty but do not learn: their dx is
-  /// zero and their covariance with each other stays (Schmidt-Kalman; Schmidt 1966).
-  virtual void correct(std::span<const JacobianRows> rows,
-                       const Eigen::Ref<const Eigen::MatrixXd>& lower, const VectorRef& innovation,
-                       std::span<const Eigen::Index> considered,
-                       Eigen::Ref<Eigen::VectorXd> dx) = 0;
-  /// P <- (I + U E^T) P (I + U E^T)^T, E the unit columns of [offset, offset + U.cols()): the
-  /// change of chart of an error frame.
-  virtual void transport(Eigen::Index offset, const Eigen::Ref<const Eigen::MatrixXd>& u) = 0;
+
+  // A correction takes three calls in this order, each using what the one before has left behind. P
+  // changes in the last alone, in one pass; until then it can be given up.
+
+  /// Remembers P H^T of the stacked rows; out = H P H^T, full symmetric matrix.
+  virtual void observe(std::span<const JacobianRows> rows, Eigen::Ref<Eigen::MatrixXd> out) = 0;
+  /// dx = P H^T S^-1 nu for the rows observed. `lower` is L with S = L L^T the covariance of the
+  /// innovation nu, nothing above its diagonal is read; `white` is L^-1 nu. The coordinates in
+  /// `considered` count with their uncertainty but do not learn: their dx is zero and their
+  /// covariance with each other stays (Schmidt-Kalman; Schmidt 1966).
+  virtual void gain(const Eigen::Ref<const Eigen::MatrixXd>& lower, const VectorRef& white,
+                    std::span<const Eigen::Index> considered, Eigen::Ref<Eigen::VectorXd> dx) = 0;
+  /// P <- T (P - P H^T S^-1 H P) T^T with T as `change` says; without a `gain` before, P <- T P
+  /// T^T. The coordinates that `change` reads (E) must not be among the considered ones.
+  virtual void correct(const ChartChange& change) = 0;
 
   /// out = the block at rows [row, row + out.rows()), columns [col, col + out.cols()).
   virtual void marginal(Eigen::Index row, Eigen::Index col,

@@ -34,8 +34,10 @@ void DenseCovariance::require_inside(Index offset, Index size, const char* opera
 
 void DenseCovariance::reserve(Index dimension) {
   if (dimension <= p_.rows()) return;
-  const Index capacity = padded(std::max(dimension, 2 * p_.rows()));
-  Eigen::MatrixXd grown(capacity, capacity);
+  Index capacity = padded(std::max(dimension, 2 * p_.rows()));
+  // Columns a power of two apart would share a few sets of the cache.
+  if (capacity / kKernelTile % 2 == 0) capacity += kKernelTile;
+  Eigen::MatrixXd grown = Eigen::MatrixXd::Zero(capacity, capacity);
   grown.topLeftCorner(n_, n_) = p_.topLeftCorner(n_, n_);
   p_ = std::move(grown);
   reserve_gain(std::max<Index>(gain_.cols(), 1));
@@ -45,25 +47,35 @@ void DenseCovariance::reserve_gain(Index columns) {
   if (gain_.rows() >= p_.rows() && gain_.cols() >= columns) return;
   const Index wanted = columns > gain_.cols() ? std::max(columns, 2 * gain_.cols()) : gain_.cols();
   gain_.resize(p_.rows(), wanted);
-  whitened_.resize(wanted);
+  right_.resize(p_.rows(), wanted);
 }
 
-void DenseCovariance::add_column(Index col, double factor, double* out) const {
-  const double* row = p_.data() + col;
-  const Index stride = p_.rows();
-  for (Index i = 0; i < col; ++i) out[i] += factor * row[i * stride];
-  const double* column = p_.data() + col * stride;
-  for (Index i = col; i < n_; ++i) out[i] += factor * column[i];
-}
-
-void DenseCovariance::gather(std::span<const PlacedJacobian> wrt, Index first_column) {
-  const Index rows = wrt.empty() ? 0 : wrt.front().jacobian.rows();
-  gain_.block(0, first_column, padded(n_), rows).setZero();
-  for (const auto& [offset, jacobian] : wrt)
+void DenseCovariance::gather(const PlacedJacobian& part, Index first_column) {
+  const Index offset = part.offset, rows = part.jacobian.rows(), cols = part.jacobian.cols();
+  const Index behind = offset + cols;
+  // Before the block, its columns are rows of the stored triangle: one visit to each cache line.
+  for (Index i = 0; i < offset; ++i) {
+    const double* p = &p_(offset, i);
+    for (Index r = 0; r < rows; ++r) {
+      double sum = 0.0;
+      for (Index c = 0; c < cols; ++c) sum += part.jacobian(r, c) * p[c];
+      gain_(i, first_column + r) += sum;
+    }
+  }
+  for (Index i = offset; i < behind; ++i)
     for (Index r = 0; r < rows; ++r)
-      for (Index c = 0; c < jacobian.cols(); ++c)
-        if (const double factor = jacobian(r, c); factor != 0.0)
-          add_column(offset + c, factor, gain_.col(first_column + r).data());
+      for (Index c = 0; c < cols; ++c)
+        gain_(i, first_column + r) += part.jacobian(r, c) * at(i, offset + c);
+  for (Index c = 0; c < cols; ++c)
+    for (Index r = 0; r < rows; ++r)
+      if (const double factor = part.jacobian(r, c); factor != 0.0)
+        gain_.col(first_column + r).segment(behind, n_ - behind) +=
+            factor * p_.col(offset + c).segment(behind, n_ - behind);
+}
+
+void DenseCovariance::gather(std::span<const PlacedJacobian> wrt, Index rows, Index first_column) {
+  gain_.block(0, first_column, padded(n_), rows).setZero();
+  for (const PlacedJacobian& part : wrt) gather(part, first_column);
 }
 
 void DenseCovariance::propagate(Index offset, std::span<const PlacedJacobian> wrt,
@@ -76,8 +88,9 @@ void DenseCovariance::propagate(Index offset, std::span<const PlacedJacobian> wr
       throw_dimension("propagate", "Jacobian has " + std::to_string(column.jacobian.rows()) +
                                        " rows, noise has " + std::to_string(d));
   }
+  observed_ = 0;
   reserve_gain(d);
-  gather(wrt, 0);
+  gather(wrt, d, 0);
   // Covariance of the moved block before its rows are overwritten: sum_b C_b J_b^T + Q.
   BlockMatrix moved = cov_noise;
   for (const auto& [from, jacobian] : wrt)
@@ -104,9 +117,9 @@ void DenseCovariance::augment(std::span<const PlacedJacobian> wrt, const BlockMa
                                      " rows, noise has " + std::to_string(d));
   }
   reserve(n_ + d);
+  observed_ = 0;
   reserve_gain(d);
-  gather(wrt, 0);
-  if (wrt.empty()) gain_.block(0, 0, padded(n_), d).setZero();
+  gather(wrt, d, 0);
   BlockMatrix own = cov_noise;
   for (const auto& [from, jacobian] : wrt)
     own += gain_.block(from, 0, jacobian.cols(), d).transpose().lazyProduct(jacobian.transpose());
@@ -119,6 +132,7 @@ void DenseCovariance::augment(std::span<const PlacedJacobian> wrt, const BlockMa
 
 void DenseCovariance::remove(Index offset, Index size) {
   require_inside(offset, size, "remove");
+  observed_ = 0;
   const Index behind = n_ - offset - size;
   for (Index c = 0; c < offset; ++c)
     for (Index i = 0; i < behind; ++i) p_(offset + i, c) = p_(offset + size + i, c);
@@ -149,67 +163,97 @@ void DenseCovariance::project(std::span<const JacobianRows> rows,
   out.triangularView<Eigen::StrictlyUpper>() = out.transpose();
 }
 
-void DenseCovariance::correct(std::span<const JacobianRows> rows,
-                              const Eigen::Ref<const Eigen::MatrixXd>& lower,
-                              const VectorRef& innovation, std::span<const Index> considered,
-                              Eigen::Ref<Eigen::VectorXd> dx) {
-  const Index m = lower.rows();
-  if (innovation.size() != m || dx.size() != n_)
-    throw_dimension("correct", "innovation has length " + std::to_string(innovation.size()) +
-                                   " for " + std::to_string(m) + " rows, dx " +
-                                   std::to_string(dx.size()) + " for dimension " +
-                                   std::to_string(n_));
-  reserve_gain(m);
+void DenseCovariance::observe(std::span<const JacobianRows> rows, Eigen::Ref<Eigen::MatrixXd> out) {
+  const Index m = out.rows();
+  reserve_gain(m + 2 * kMaxTangent);
   for (const auto& row : rows) {
     for (const auto& column : row.columns)
-      require_inside(column.offset, column.jacobian.cols(), "correct");
-    gather(row.columns, row.first_row);
+      require_inside(column.offset, column.jacobian.cols(), "observe");
+    if (row.first_row < 0 || row.first_row + row.rows > m)
+      throw_dimension("observe", "rows [" + std::to_string(row.first_row) + ", " +
+                                     std::to_string(row.first_row + row.rows) +
+                                     ") are outside the " + std::to_string(m) + " of the result");
+    gather(row.columns, row.rows, row.first_row);
   }
-  // W = P H^T L^-T and y = L^-1 nu by forward substitution over the columns; dx = W y, P -= W W^T.
-  const Index n = padded(n_);
-  dx.setZero();
-  for (Index k = 0; k < m; ++k) {
-    auto column = gain_.col(k).head(n);
-    double y = innovation[k];
-    for (Index l = 0; l < k; ++l) {
-      column -= lower(k, l) * gain_.col(l).head(n);
-      y -= lower(k, l) * whitened_[l];
+  out.setZero();
+  for (const auto& a : rows)
+    for (const auto& b : rows) {
+      if (b.first_row > a.first_row) continue;
+      for (const auto& [offset, jacobian] : a.columns)
+        out.block(a.first_row, b.first_row, a.rows, b.rows) +=
+            jacobian.lazyProduct(gain_.block(offset, b.first_row, jacobian.cols(), b.rows));
     }
-    column /= lower(k, k);
-    whitened_[k] = y / lower(k, k);
-    dx += whitened_[k] * column.head(n_);
-  }
-  kept_.clear();
-  for (const Index i : considered)
-    for (const Index j : considered) kept_.push_back(at(i, j));
-  subtract_outer_product(p_.data(), p_.rows(), n_, gain_.data(), gain_.rows(), m);
-  auto kept = kept_.begin();
-  for (const Index i : considered) {
+  out.triangularView<Eigen::StrictlyUpper>() = out.transpose();
+  observed_ = m;
+}
+
+void DenseCovariance::gain(const Eigen::Ref<const Eigen::MatrixXd>& lower, const VectorRef& white,
+                           std::span<const Index> considered, Eigen::Ref<Eigen::VectorXd> dx) {
+  const Index m = observed_;
+  if (lower.rows() != m || white.size() != m || dx.size() != n_)
+    throw_dimension("gain", "factor of " + std::to_string(lower.rows()) +
+                                " rows and innovation of " + std::to_string(white.size()) +
+                                " for " + std::to_string(m) + " rows observed, dx " +
+                                std::to_string(dx.size()) + " for dimension " + std::to_string(n_));
+  // W = P H^T L^-T, so that dx = W y with y = L^-1 nu and P -= W W^T.
+  symmetric_kernels().front().divide(
+      {gain_.data(), gain_.rows(), n_, lower.data(), lower.outerStride(), m});
+  dx.noalias() = gain_.topLeftCorner(n_, m) * white;
+  considered_.assign(considered.begin(), considered.end());
+  for (const Index i : considered_) {
+    require_inside(i, 1, "gain");
     dx[i] = 0.0;
-    for (const Index j : considered) p_(std::max(i, j), std::min(i, j)) = *kept++;
   }
 }
 
-void DenseCovariance::transport(Index offset, const Eigen::Ref<const Eigen::MatrixXd>& u) {
-  const Index d = u.cols();
-  require_inside(offset, d, "transport");
+Index DenseCovariance::append(const ChartChange& change) {
+  const auto& u = change.u;
+  const Index m = observed_, d = u.cols(), n = padded(n_);
+  require_inside(change.offset, d, "correct");
   if (u.rows() != n_)
-    throw_dimension("transport", "U has " + std::to_string(u.rows()) + " rows for dimension " +
-                                     std::to_string(n_));
-  // (I + U E^T) P (I + U E^T)^T = P + U B^T + B U^T with B = P E + U (E^T P E) / 2.
-  reserve_gain(d);
-  gain_.leftCols(d).topRows(n_).setZero();
-  for (Index k = 0; k < d; ++k) add_column(offset + k, 1.0, gain_.col(k).data());
-  BlockMatrix half(d, d);
-  for (Index r = 0; r < d; ++r)
-    for (Index c = 0; c < d; ++c) half(r, c) = 0.5 * at(offset + r, offset + c);
+    throw_dimension("correct", "U has " + std::to_string(u.rows()) + " rows for dimension " +
+                                   std::to_string(n_));
+  for (const Index i : considered_)
+    if (i >= change.offset && i < change.offset + d)
+      throw_dimension("correct", "coordinate " + std::to_string(i) + " is considered");
+  // T P' T^T = P' + U B^T + B U^T with B = P' E + U (E^T P' E) / 2.
+  auto left_u = gain_.block(0, m, n, d), left_b = gain_.block(0, m + d, n, d);
+  left_u.setZero();
+  left_u.topRows(n_) = u;
+  const PlacedJacobian e{change.offset, BlockMatrix::Identity(d, d)};
+  gather(std::span(&e, 1), d, m + d);
   for (Index k = 0; k < d; ++k)
-    for (Index l = 0; l < d; ++l) gain_.col(k).head(n_) += half(l, k) * u.col(l);
-  for (Index k = 0; k < d; ++k) {
-    const auto b = gain_.col(k).head(n_);
-    for (Index c = 0; c < n_; ++c)
-      p_.col(c).segment(c, n_ - c) += b[c] * u.col(k).tail(n_ - c) + u(c, k) * b.tail(n_ - c);
+    for (Index j = 0; j < m; ++j)
+      left_b.col(k) -= gain_(change.offset + k, j) * gain_.col(j).head(n);
+  const BlockMatrix half = 0.5 * left_b.middleRows(change.offset, d);
+  left_b += left_u.lazyProduct(half);
+  right_.topLeftCorner(n, m) = gain_.topLeftCorner(n, m);
+  right_.block(0, m, n, d) = -left_b;
+  right_.block(0, m + d, n, d) = -left_u;
+  return m + 2 * d;
+}
+
+void DenseCovariance::correct(const ChartChange& change) {
+  const bool moves = change.u.cols() > 0;
+  if (observed_ == 0) {
+    considered_.clear();
+    reserve_gain(2 * change.u.cols());
   }
+  const Index columns = moves ? append(change) : observed_;
+  const Eigen::MatrixXd& right = moves ? right_ : gain_;
+  kept_.clear();
+  for (const Index i : considered_)
+    for (const Index j : considered_) kept_.push_back(at(i, j));
+  symmetric_kernels().front().subtract(
+      {p_.data(), p_.rows(), n_, gain_.data(), right.data(), gain_.rows(), columns});
+  auto kept = kept_.begin();
+  for (const Index i : considered_)
+    for (const Index j : considered_) {
+      double& p = p_(std::max(i, j), std::min(i, j));
+      p = *kept++;
+      for (Index k = observed_; k < columns; ++k) p -= gain_(i, k) * right(j, k);
+    }
+  observed_ = 0;
 }
 
 void DenseCovariance::marginal(Index row, Index col, Eigen::Ref<Eigen::MatrixXd> out) const {

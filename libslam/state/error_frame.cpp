@@ -35,17 +35,17 @@ void require_length(const GaussianState& state, const VectorRef& delta) {
                                 ", the state has dimension " + std::to_string(state.dimension()));
 }
 
-void add_to_block(GaussianState& state, BlockId block, const VectorRef& delta) {
-  BlockVector x = state.estimate(block);
-  boxplus(state.spec(block), x, delta.segment(state.offset(block), state.size(block)));
-  state.set_estimate(block, x);
+void add_to_block(const GaussianState::MutableBlock& block, const VectorRef& delta) {
+  auto x = block.estimate;
+  boxplus(block.spec, x, delta.segment(block.offset, block.size));
 }
 
 }  // namespace
 
-void StandardFrame::retract(GaussianState& state, BlockId, const VectorRef& delta) {
+ChartChange StandardFrame::retract(GaussianState& state, BlockId, const VectorRef& delta) {
   require_length(state, delta);
-  for (const BlockId block : state.blocks()) add_to_block(state, block, delta);
+  for (const BlockId block : state.blocks()) add_to_block(state.mutable_block(block), delta);
+  return {};
 }
 
 void RightInvariantFrame::require_supported(const BlockSpec& spec) const {
@@ -58,33 +58,33 @@ void RightInvariantFrame::require_supported(const BlockSpec& spec) const {
                               "planar points only");
 }
 
-void RightInvariantFrame::retract(GaussianState& state, BlockId pose, const VectorRef& delta) {
+ChartChange RightInvariantFrame::retract(GaussianState& state, BlockId pose,
+                                         const VectorRef& delta) {
   require_length(state, delta);
   const Eigen::Index heading = state.offset(pose) + 2;
   const double turn = delta[heading];
   const PlanarExponential exponential(turn);
   if (moved_.size() < state.dimension()) moved_.resize(2 * state.dimension());
   moved_.head(state.dimension()).setZero();
-  for (const BlockId block : state.blocks()) {
-    const BlockSpec& spec = state.spec(block);
-    if (spec.role == WorldRole::kNone) {
-      add_to_block(state, block, delta);
+  for (const BlockId id : state.blocks()) {
+    GaussianState::MutableBlock block = state.mutable_block(id);
+    const WorldRole role = block.spec.role;
+    if (role == WorldRole::kNone) {
+      add_to_block(block, delta);
       continue;
     }
-    if (spec.role == WorldRole::kPose && block != pose)
-      throw std::invalid_argument("block '" + spec.name +
+    if (role == WorldRole::kPose && id != pose)
+      throw std::invalid_argument("block '" + block.spec.name +
                                   "': the right-invariant error frame knows one pose only");
-    const Eigen::Index offset = state.offset(block);
-    BlockVector x = state.estimate(block);
+    auto& x = block.estimate;
     const Eigen::Vector2d before = x.head<2>();
-    const Eigen::Vector2d xi = delta.segment<2>(offset) - rotated_90(before) * turn;
+    const Eigen::Vector2d xi = delta.segment<2>(block.offset) - rotated_90(before) * turn;
     const Eigen::Vector2d after = exponential(before, xi);
     x.head<2>() = after;
-    if (spec.role == WorldRole::kPose) x[2] = wrap_angle(x[2] + turn);
-    state.set_estimate(block, x);
-    moved_.segment<2>(offset) = rotated_90(after - before);
+    if (role == WorldRole::kPose) x[2] = wrap_angle(x[2] + turn);
+    moved_.segment<2>(block.offset) = rotated_90(after - before);
   }
-  state.covariance().transport(heading, moved_.head(state.dimension()));
+  return {heading, {moved_.data(), state.dimension(), 1}};
 }
 
 std::unique_ptr<ErrorFrame> make_error_frame(std::string_view name) {

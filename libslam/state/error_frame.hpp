@@ -7,8 +7,9 @@
 //     propagate:  P <- F P F^T + Q                      (same as T' F_xi T^-1 in xi)
 //     correct:    delta = K nu  ->  xi = T(x-)^-1 delta, x+ = x- [+] xi  (exact retraction)
 //                 P <- T(x+) T(x-)^-1 P (T(x+) T(x-)^-1)^T
-// is the same filter as one that keeps the covariance of xi, at the cost of one low-rank transport
-// per correction and none in propagation. Derivation: libslam/README.md, section "Error frames".
+// is the same filter as one that keeps the covariance of xi, at the cost of one low-rank change of
+// chart per correction, which the store joins with the correction itself, and none in propagation.
+// Derivation: libslam/README.md, section "Error frames".
 
 #include <memory>
 #include <string_view>
@@ -26,9 +27,11 @@ class ErrorFrame {
   /// Throws std::invalid_argument naming the block if this frame is not derived for it.
   virtual void require_supported(const BlockSpec& spec) const = 0;
   /// Moves every estimate by the additive correction `delta` (length: state dimension), which was
-  /// computed at the current estimate, and transports the covariance to the new one. `pose` is the
-  /// block whose heading carries the rotation of the world error.
-  virtual void retract(GaussianState& state, BlockId pose, const VectorRef& delta) = 0;
+  /// computed at the current estimate. Returns T(x+) T(x-)^-1, which the caller applies to the
+  /// covariance; valid until the next call. `pose` is the block whose heading carries the rotation
+  /// of the world error.
+  [[nodiscard]] virtual ChartChange retract(GaussianState& state, BlockId pose,
+                                            const VectorRef& delta) = 0;
 };
 
 /// delta added to every block: the EKF of the textbooks.
@@ -36,7 +39,7 @@ class StandardFrame final : public ErrorFrame {
  public:
   std::string_view name() const override { return "standard"; }
   void require_supported(const BlockSpec&) const override {}
-  void retract(GaussianState& state, BlockId pose, const VectorRef& delta) override;
+  ChartChange retract(GaussianState& state, BlockId pose, const VectorRef& delta) override;
 };
 
 /// Right-invariant error of SE_{1+n}(2): heading theta, position p and every world point m share
@@ -50,7 +53,7 @@ class RightInvariantFrame final : public ErrorFrame {
   std::string_view name() const override { return "right_invariant"; }
   /// Supported: one SE2 pose, planar points, blocks without a world role.
   void require_supported(const BlockSpec& spec) const override;
-  void retract(GaussianState& state, BlockId pose, const VectorRef& delta) override;
+  ChartChange retract(GaussianState& state, BlockId pose, const VectorRef& delta) override;
 
  private:
   Eigen::VectorXd moved_;  // u = J (p+ - p-) of every world position, stacked; workspace

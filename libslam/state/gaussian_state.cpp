@@ -136,6 +136,11 @@ void GaussianState::set_estimate(BlockId block, const VectorRef& estimate) {
   storage_.segment(s.storage_offset, s.storage) = estimate;
 }
 
+GaussianState::MutableBlock GaussianState::mutable_block(BlockId block) {
+  const Slot& s = slot(block);
+  return {s.spec, s.offset, s.tangent, {storage_.data() + s.storage_offset, s.storage}};
+}
+
 BlockMatrix GaussianState::covariance_of(BlockId block) const {
   return cross_covariance(block, block);
 }

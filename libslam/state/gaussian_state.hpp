@@ -53,6 +53,14 @@ class GaussianState {
   /// Estimate of a block, storage coordinates.
   Eigen::Map<const Eigen::VectorXd> estimate(BlockId block) const;
   void set_estimate(BlockId block, const VectorRef& estimate);
+  /// What an error frame needs to move a block: one look-up instead of several.
+  struct MutableBlock {
+    const BlockSpec& spec;
+    Eigen::Index offset, size;             ///< of its error
+    Eigen::Map<Eigen::VectorXd> estimate;  ///< storage coordinates, changed in place
+  };
+  /// Valid until a block is added or removed.
+  MutableBlock mutable_block(BlockId block);
   /// Covariance of one block, tangent x tangent.
   BlockMatrix covariance_of(BlockId block) const;
   /// Cross-covariance of two blocks.

@@ -14,32 +14,39 @@ using namespace libslam;
 
 constexpr Eigen::Index kRows = 20;
 
+[[maybe_unused]] const bool kDescribed = [] {
+  benchmark::AddCustomContext("vectors", symmetric_kernels().front().name);
+  return true;
+}();
+
 struct Operands {
-  explicit Operands(Eigen::Index n) {
+  explicit Operands(Eigen::Index dimension) : n(dimension) {
+    const Eigen::Index padded = (n + kKernelTile - 1) / kKernelTile * kKernelTile;
     std::mt19937_64 random(81);
-    p = Eigen::MatrixXd::Identity(n, n);
-    w = Eigen::MatrixXd::Zero((n + kKernelTile - 1) / kKernelTile * kKernelTile, kRows);
+    p = Eigen::MatrixXd::Identity(padded, padded);
+    w = Eigen::MatrixXd::Zero(padded, kRows);
     // Small enough that P stays in the range of normal numbers over all repetitions.
     w.topRows(n) = 1e-8 * libslam::testing::random_matrix(n, kRows, random);
   }
+  Eigen::Index n;
   Eigen::MatrixXd p, w;
 };
 
 void kernel_libslam(benchmark::State& state) {
-  const Eigen::Index n = state.range(0);
-  Operands x(n);
+  Operands x(state.range(0));
+  const SymmetricUpdate update{x.p.data(), x.p.rows(), x.n,  x.w.data(),
+                               x.w.data(), x.w.rows(), kRows};
   for (auto _ : state) {
-    subtract_outer_product(x.p.data(), n, n, x.w.data(), x.w.rows(), kRows);
+    symmetric_kernels().front().subtract(update);
     benchmark::ClobberMemory();
   }
   state.counters["steps"] = 1;
 }
 
 void kernel_eigen(benchmark::State& state) {
-  const Eigen::Index n = state.range(0);
-  Operands x(n);
+  Operands x(state.range(0));
   for (auto _ : state) {
-    x.p.selfadjointView<Eigen::Lower>().rankUpdate(x.w.topRows(n), -1.0);
+    x.p.topLeftCorner(x.n, x.n).selfadjointView<Eigen::Lower>().rankUpdate(x.w.topRows(x.n), -1.0);
     benchmark::ClobberMemory();
   }
   state.counters["steps"] = 1;

@@ -1,14 +1,16 @@
-// mrpt-baseline CONFIG RAWLOG --out DIR: MRPT's own CRangeBearingKFSLAM2D on a log, with the motion noise,
-// the sensor sigmas and the gate of CONFIG, into a run directory that slam-evaluate compares with ours.
+// mrpt-baseline CONFIG RAWLOG --out DIR: MRPT's own CRangeBearingKFSLAM2D on a log, with the motion
+// noise, the sensor sigmas and the gate of CONFIG, into a run directory that slam-evaluate compares
+// with ours.
 
+#include <ctime>
+#include <iostream>
+
+#include <CLI/CLI.hpp>
 #include <mrpt/obs/CActionRobotMovement2D.h>
 #include <mrpt/obs/CObservationBearingRange.h>
 #include <mrpt/poses/CPosePDFGaussian.h>
 #include <mrpt/slam/CRangeBearingKFSLAM2D.h>
 
-#include <CLI/CLI.hpp>
-#include <ctime>
-#include <iostream>
 #include <libslam/config/yaml_loader.hpp>
 #include <libslam/frontend/odometry.hpp>
 #include <libslam/io/rawlog_player.hpp>
@@ -65,7 +67,8 @@ class AccumulatedMotion {
   MotionStep step_;
 };
 
-/// A frame with the range-bearing observation that the configuration lets through; null if there is none.
+/// A frame with the range-bearing observation that the configuration lets through; null if there is
+/// none.
 mrpt::obs::CSensoryFrame::Ptr usable_frame(const mrpt::obs::CSensoryFrame::Ptr& frame,
                                            const Parameters& parameters) {
   const auto seen = frame ? frame->getObservationByClass<CObservationBearingRange>() : nullptr;
@@ -146,7 +149,8 @@ int run(const std::string& config, const std::string& rawlog, const std::string&
                             : LandmarkIdentity::known;
   const LandmarkMap map = map_of(filter);
   recorder.finish(summary, map, read_truth(find_truth(rawlog)), identity);
-  std::cout << map.size() << " landmarks, " << cpu_s << " s CPU in the filter, " << directory << '\n';
+  std::cout << map.size() << " landmarks, " << cpu_s << " s CPU in the filter, " << directory
+            << '\n';
   return 0;
 }
 

@@ -16,6 +16,7 @@
 #include <libslam/io/importers/imported_log.hpp>
 #include <libslam/map/csv_text.hpp>
 #include <libslam/result/atomic_file.hpp>
+#include <libslam/result/trajectory.hpp>
 
 namespace libslam {
 namespace {
@@ -144,16 +145,8 @@ bool write_rawlog(const ImportedLog& log, const std::string& file,
 
 std::string path_text(const Trajectory& path) {
   std::string text;
-  for (std::size_t i = 0; i < path.poses.size(); ++i) {
-    const Eigen::Vector3d& p = path.poses[i];
-    append_time(text, path.times[i]);
-    for (const double value :
-         {p.x(), p.y(), 0.0, 0.0, 0.0, std::sin(p.z() / 2), std::cos(p.z() / 2)}) {
-      text += ' ';
-      append_number(text, value);
-    }
-    text += '\n';
-  }
+  for (std::size_t i = 0; i < path.poses.size(); ++i)
+    append_tum_row(text, path.times[i], path.poses[i]);
   return text;
 }
 

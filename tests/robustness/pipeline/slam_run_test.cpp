@@ -139,6 +139,37 @@ TEST_F(SlamRun, InterruptionsAtAnyMomentLeaveAValidRunDirectory) {
   }
 }
 
+TEST_F(SlamRun, IgnoredIdentitiesCannotCollideWithRunningNumbers) {
+  const std::string gates =
+      " --set association.gate_probability=0.5 --set association.new_landmark_probability=0.5"
+      " --set association.confirm_after=1";
+  const std::string unknown = LIBSLAM_CONFIG_DIR "/range_bearing_unknown_ids.yaml ";
+  EXPECT_EQ(slam_run(unknown + kGoodLog + gates).code, 0);
+  EXPECT_GT(summary()["result"]["landmarks"], 70);
+}
+
+TEST_F(SlamRun, TheProcessAndItsSummaryAgreeOnTheExitCode) {
+  // The demo log carries no velocities.
+  EXPECT_EQ(slam_run(kConfig + " " + kGoodLog + " --set input.odometry=velocities").code, 3);
+  EXPECT_EQ(summary()["exit_code"], 3);
+}
+
+TEST_F(SlamRun, AnInterruptionDoesNotWaitForTheNextEntry) {
+  const std::string log = odometry_log(
+      3, [](int i, auto& o) { o.timestamp = mrpt::Clock::fromDouble(1000.0 + 500.0 * i); });
+  const auto begin = std::chrono::steady_clock::now();
+  const Outcome outcome = run("timeout --signal=INT 1 " + kRun + " " + kConfig + " " + log +
+                              " --speed 1 --out " + path("run"));
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(60));
+  EXPECT_EQ(summary()["exit_code"], 7) << outcome.err;
+}
+
+TEST_F(SlamRun, AnUpdatePeriodLongerThanTheLogIsSaid) {
+  const Outcome outcome =
+      slam_run(kConfig + " " + kGoodLog + " --set policies.update_period_s=0.5");
+  EXPECT_NE(outcome.err.find("update_period_s"), std::string::npos) << outcome.err;
+}
+
 TEST_F(SlamRun, OdometryThatIsNotFiniteIsLeftOutOrRefused) {
   const std::string log = odometry_log(50, [](int i, auto& o) {
     if (i == 20) o.odometry.x(std::numeric_limits<double>::quiet_NaN());

@@ -139,6 +139,7 @@ const Case kOthers[] = {
     {"ticks_of_ackermann",
      [](Parameters& p) {
        p.motion.model = "ackermann";
+       p.motion.encoder_offset = 0.76;
        p.input.odometry = "ticks";
      },
      {"input.odometry", "motion.model"}},

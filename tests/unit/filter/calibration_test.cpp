@@ -1,14 +1,15 @@
 // Calibration as state: found where the motion excites it, left alone where it does not.
 
+#include <cmath>
+#include <limits>
+#include <tests/support/slam_world.hpp>
+
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <libslam/association/known.hpp>
 #include <libslam/filter/ekf_slam.hpp>
 #include <libslam/measurement/range_bearing.hpp>
 #include <libslam/motion/differential.hpp>
-#include <limits>
-#include <tests/support/slam_world.hpp>
 
 using namespace libslam;
 using libslam::testing::SlamWorld;
@@ -37,7 +38,8 @@ EkfSlam make_filter(const SlamWorld& world, const CalibrationParameters& calibra
 /// What wheels that are `left` and `right` times their nominal size would have reported.
 void falsify(MotionAction& action, double left, double right) {
   const double half = 0.5 * action.increment[2];
-  const double travel = action.increment.head<2>().norm() * (half == 0.0 ? 1.0 : half / std::sin(half));
+  const double travel =
+      action.increment.head<2>().norm() * (half == 0.0 ? 1.0 : half / std::sin(half));
   const double dl = (travel - half * kTrack) / left, dr = (travel + half * kTrack) / right;
   const double turn = (dr - dl) / kTrack, length = 0.5 * (dl + dr);
   const double chord = turn == 0.0 ? length : length * std::sin(0.5 * turn) / (0.5 * turn);
@@ -71,8 +73,8 @@ TEST(Calibration, WheelScalesAreFoundWithinTheirUncertainty) {
   }
 }
 
-// Straight ahead, the measured turn is noise alone. Regression of the true turn (zero) on it would pull
-// 1 / track_width to zero and call it certain.
+// Straight ahead, the measured turn is noise alone. Regression of the true turn (zero) on it would
+// pull 1 / track_width to zero and call it certain.
 TEST(Calibration, TrackWidthKeepsItsPriorOnAStraightLine) {
   CalibrationParameters calibration;
   calibration.track_width.enabled = true;

@@ -8,7 +8,6 @@
 #include <gtest/gtest.h>
 
 #include <libslam/state/dense_covariance.hpp>
-#include <libslam/state/symmetric_kernel.hpp>
 
 using namespace libslam;
 using libslam::testing::random_covariance;
@@ -46,6 +45,31 @@ double error(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
   return (a - b).cwiseAbs().maxCoeff();
 }
 
+/// T = I + U E^T, E the unit columns from `offset`.
+Eigen::MatrixXd chart_matrix(Eigen::Index offset, const Eigen::MatrixXd& u) {
+  Eigen::MatrixXd t = Eigen::MatrixXd::Identity(u.rows(), u.rows());
+  t.middleCols(offset, u.cols()) += u;
+  return t;
+}
+
+ChartChange chart_change(Eigen::Index offset, const Eigen::MatrixXd& u) {
+  return {offset, {u.data(), u.rows(), u.cols()}};
+}
+
+/// All of a correction; returns dx.
+Eigen::VectorXd correct(DenseCovariance& dense, const std::vector<JacobianRows>& rows,
+                        const Eigen::MatrixXd& r, const Eigen::VectorXd& nu,
+                        const std::vector<Eigen::Index>& considered = {},
+                        const ChartChange& change = {}) {
+  Eigen::MatrixXd s(nu.size(), nu.size());
+  dense.observe(rows, s);
+  const Eigen::MatrixXd lower = (s + r).llt().matrixL();
+  Eigen::VectorXd dx(dense.dimension());
+  dense.gain(lower, lower.triangularView<Eigen::Lower>().solve(nu), considered, dx);
+  dense.correct(change);
+  return dx;
+}
+
 }  // namespace
 
 class DenseCovarianceSizes : public ::testing::TestWithParam<int> {};
@@ -75,16 +99,18 @@ TEST_P(DenseCovarianceSizes, CorrectEqualsJosephForm) {
   const Eigen::MatrixXd r = random_covariance(4, random);
   const Eigen::VectorXd nu = random_matrix(4, 1, random);
 
-  Eigen::MatrixXd projected(4, 4);
+  Eigen::MatrixXd projected(4, 4), observed(4, 4);
   store.dense.project(rows, projected);
   EXPECT_LT(error(projected, h * store.full * h.transpose()), kRounding);
+  store.dense.observe(rows, observed);
+  EXPECT_LT(error(observed, projected), kRounding);
+  EXPECT_LT(error(store.matrix(), store.full), kRounding);
 
   const Eigen::MatrixXd s = projected + r;
   const Eigen::MatrixXd k = store.full * h.transpose() * s.inverse();
   const Eigen::MatrixXd i_kh = Eigen::MatrixXd::Identity(n, n) - k * h;
   const Eigen::MatrixXd joseph = i_kh * store.full * i_kh.transpose() + k * r * k.transpose();
-  Eigen::VectorXd dx(n);
-  store.dense.correct(rows, s.llt().matrixL().toDenseMatrix(), nu, {}, dx);
+  const Eigen::VectorXd dx = correct(store.dense, rows, r, nu);
   EXPECT_LT(error(store.matrix(), joseph), kRounding * 10);
   EXPECT_LT((dx - k * nu).cwiseAbs().maxCoeff(), kRounding * 10);
 }
@@ -105,10 +131,12 @@ TEST_P(DenseCovarianceSizes, ConsideredCoordinatesDoNotLearn) {
   const Eigen::MatrixXd i_kh = Eigen::MatrixXd::Identity(n, n) - k * h;
   const Eigen::MatrixXd joseph = i_kh * store.full * i_kh.transpose() + k * r * k.transpose();
   const Eigen::VectorXd nu = random_matrix(2, 1, random);
-  Eigen::VectorXd dx(n);
-  store.dense.correct(std::vector<JacobianRows>{{0, 2, columns}}, s.llt().matrixL().toDenseMatrix(),
-                      nu, considered, dx);
-  EXPECT_LT(error(store.matrix(), joseph), kRounding * 10);
+  // The change of chart reads coordinate 2 and moves all.
+  const Eigen::MatrixXd u = random_matrix(n, 1, random);
+  const Eigen::MatrixXd t = chart_matrix(2, u);
+  const Eigen::VectorXd dx =
+      correct(store.dense, {{0, 2, columns}}, r, nu, considered, chart_change(2, u));
+  EXPECT_LT(error(store.matrix(), t * joseph * t.transpose()), kRounding * 100);
   EXPECT_LT((dx - k * nu).cwiseAbs().maxCoeff(), kRounding * 10);
 }
 
@@ -128,15 +156,27 @@ TEST_P(DenseCovarianceSizes, PropagateMovesRowsAndColumns) {
   EXPECT_LT(error(store.matrix(), expected), kRounding * 10);
 }
 
-TEST_P(DenseCovarianceSizes, TransportIsACongruence) {
+TEST_P(DenseCovarianceSizes, ChangeOfChartIsACongruence) {
   std::mt19937_64 random(14);
   const Eigen::Index n = GetParam();
-  Store store(random_covariance(n, random));
+  const Store store(random_covariance(n, random));
   const Eigen::MatrixXd u = random_matrix(n, 2, random);
-  Eigen::MatrixXd t = Eigen::MatrixXd::Identity(n, n);
-  t.middleCols(2, 2) += u;
-  store.dense.transport(2, u);
-  EXPECT_LT(error(store.matrix(), t * store.full * t.transpose()), kRounding * 100);
+  const Eigen::MatrixXd t = chart_matrix(2, u);
+  Store alone = store;
+  alone.dense.correct(chart_change(2, u));
+  EXPECT_LT(error(alone.matrix(), t * store.full * t.transpose()), kRounding * 100);
+
+  // In one pass with a correction, and not again without a new one.
+  const std::vector<PlacedJacobian> columns = {{1, random_matrix(2, 3, random)}};
+  const Eigen::MatrixXd r = random_covariance(2, random);
+  Store separate = store, joint = store;
+  correct(separate.dense, {{0, 2, columns}}, r, Eigen::Vector2d::Ones());
+  const Eigen::MatrixXd corrected = separate.matrix();
+  correct(joint.dense, {{0, 2, columns}}, r, Eigen::Vector2d::Ones(), {}, chart_change(2, u));
+  const Eigen::MatrixXd moved = joint.matrix();
+  EXPECT_LT(error(moved, t * corrected * t.transpose()), kRounding * 100);
+  joint.dense.correct({});
+  EXPECT_EQ(joint.matrix(), moved);
 }
 
 TEST_P(DenseCovarianceSizes, RemoveMarginalizes) {
@@ -151,27 +191,16 @@ TEST_P(DenseCovarianceSizes, RemoveMarginalizes) {
   EXPECT_LT(error(store.matrix(), expected), kRounding);
 }
 
-TEST(DenseCovariance, KernelTouchesTheLowerTriangleAlone) {
-  std::mt19937_64 random(16);
-  for (const Eigen::Index n : {1, 3, 16, 31, 50}) {
-    Eigen::MatrixXd w = Eigen::MatrixXd::Zero((n + 15) / 16 * 16, 6);
-    w.topRows(n) = random_matrix(n, 6, random);
-    Eigen::MatrixXd p = random_covariance(n, random);
-    const Eigen::MatrixXd before = p;
-    subtract_outer_product(p.data(), n, n, w.data(), w.rows(), 6);
-    const Eigen::MatrixXd expected = before - w.topRows(n) * w.topRows(n).transpose();
-    EXPECT_LT((p - expected).triangularView<Eigen::Lower>().toDenseMatrix().cwiseAbs().maxCoeff(),
-              kRounding);
-    const Eigen::MatrixXd upper = (p - before).triangularView<Eigen::StrictlyUpper>();
-    EXPECT_EQ(upper.cwiseAbs().maxCoeff(), 0.0);
-  }
-}
-
 TEST(DenseCovariance, NamesTheOffendingDimension) {
   std::mt19937_64 random(17);
   Store store(random_covariance(5, random));
   EXPECT_THROW(store.dense.remove(4, 2), std::invalid_argument);
   EXPECT_THROW(store.dense.add_noise(-1, BlockMatrix::Identity(2, 2)), std::invalid_argument);
+  EXPECT_THROW(store.dense.correct(chart_change(0, Eigen::VectorXd::Ones(4))),
+               std::invalid_argument);
+  EXPECT_THROW(correct(store.dense, {}, Eigen::Matrix2d::Identity(), Eigen::Vector2d::Zero(), {2},
+                       chart_change(2, Eigen::VectorXd::Ones(5))),
+               std::invalid_argument);
   try {
     store.dense.propagate(0, std::vector<PlacedJacobian>{{0, BlockMatrix::Identity(3, 3)}},
                           BlockMatrix::Identity(2, 2));

@@ -91,12 +91,17 @@ struct Job {
   std::vector<std::string> notes;
 };
 
+bool is_config(const std::string& file) {
+  const std::string extension = fs::path(file).extension();
+  return extension == ".yaml" || extension == ".yml" || extension == ".ini";
+}
+
 /// Reads the configuration, completes the arguments with what an ini file names.
 Job load(Arguments& arguments) {
   Job job;
+  if (!is_config(arguments.config) && (arguments.rawlog.empty() || is_config(arguments.rawlog)))
+    std::swap(arguments.rawlog, arguments.config);
   const std::string extension = fs::path(arguments.config).extension();
-  const bool is_config = extension == ".yaml" || extension == ".yml" || extension == ".ini";
-  if (arguments.rawlog.empty() && !is_config) std::swap(arguments.rawlog, arguments.config);
   if (extension == ".ini") {
     KfSlamIni ini = load_kf_slam_ini(arguments.config);
     job.parameters = ini.parameters;
@@ -169,6 +174,30 @@ void report_details(const RunSummary& summary, Console& console) {
     console.say("  " + phase + ": " + number(seconds) + " s");
 }
 
+/// Truth that was asked for must be readable; truth that merely stands beside the log need not be.
+GroundTruth read_known_truth(const TruthFiles& files, const Arguments& arguments,
+                             Console& console) {
+  try {
+    return read_truth(files);
+  } catch (const InputError& e) {
+    if (!arguments.truth.empty() || !arguments.truth_map.empty()) throw;
+    console.warn(std::string("warning: no comparison with truth: ") + e.what());
+    return {};
+  }
+}
+
+/// Figures that say that the result should not be trusted.
+void report_doubts(const RunSummary& summary, const GroundTruth& truth, Console& console) {
+  constexpr double kAbsurd = 3.0;
+  if (summary.health.nis_mean && *summary.health.nis_mean > kAbsurd)
+    console.warn(
+        "warning: innovations are " + number(*summary.health.nis_mean) +
+        " times what the configured noise allows (NIS per degree of freedom): the noise is "
+        "too small for this log, or the association wrong");
+  if (!truth.path.poses.empty() && !(summary.truth && summary.truth->path))
+    console.warn("warning: the true path does not overlap the log in time: no comparison");
+}
+
 RunSummary run_and_log_failures(const RunRequest& request, Console& console) {
   try {
     return run_rawlog(request);
@@ -194,7 +223,7 @@ int run(Arguments arguments) {
   request.program = "slam-run";
   request.rawlog = arguments.rawlog;
   request.parameters = job.parameters;
-  request.truth = read_truth(job.truth);
+  request.truth = read_known_truth(job.truth, arguments, console);
   request.directory =
       arguments.out.empty() ? fresh_directory(arguments.rawlog) : fs::path(arguments.out);
   request.force = arguments.force;
@@ -206,6 +235,7 @@ int run(Arguments arguments) {
   const RunSummary summary = run_and_log_failures(request, console);
   console.clear_progress();
   report(summary, request.directory, console);
+  report_doubts(summary, request.truth, console);
   if (arguments.verbose) report_details(summary, console);
   console.save(request.directory / "log.txt");
   return summary.exit_code;

@@ -141,9 +141,11 @@ class Run {
     }
     record.step_ms = 1e3 * seconds_since(start);
     if (!pipeline_.filter().healthy() || !std::isfinite(record.nis)) {
-      end(6, "diverged");
+      end(6, "diverged: pose, calibration or a variance is not a finite number");
       return;
     }
+    any_landmark_ = any_landmark_ || record.new_landmarks > 0;
+    unused_sightings_ += record.ambiguous + record.gated;
     recorder_.record(record);
     if (request_.parameters.output.mrpt_files) simple_map_.add(record.pose, record.cov, step.frame);
     if (request_.on_step) request_.on_step(player_.progress(), record);
@@ -175,6 +177,7 @@ class Run {
       warnings.push_back(std::to_string(pipeline_.frontend().unusable()) +
                          " measurements left out: not finite or range not positive");
     warn_of_idle_schedule(warnings);
+    warn_of_unused_sightings(warnings);
     fill_timing(summary);
     const Eigen::MatrixXd cov = pipeline_.filter().state().full_covariance();
     if (cov.rows() <= kLargestSpectrum && cov.allFinite())
@@ -192,6 +195,16 @@ class Run {
     if (period > 0.0 && input.observations > 10 && input.duration_s < period)
       warnings.push_back("policies.update_period_s is longer than the whole log: its times span " +
                          std::to_string(input.duration_s) + " s; all but one frame were left out");
+  }
+
+  /// A run on odometry alone is legitimate, but rarely what was meant.
+  void warn_of_unused_sightings(std::vector<std::string>& warnings) const {
+    if (pipeline_.filter().registry().size() > 0 || any_landmark_) return;
+    warnings.push_back(unused_sightings_ == 0
+                           ? "no range-bearing sighting passed the filters: this is odometry alone"
+                           : std::to_string(unused_sightings_) +
+                                 " sightings, none used: where the log has no identities, set "
+                                 "association.method to nearest_neighbour");
   }
 
   void fill_timing(RunSummary& summary) const {
@@ -214,7 +227,8 @@ class Run {
   SimpleMapWriter simple_map_;
   std::exception_ptr failure_;
   std::vector<std::string> warnings_;
-  std::int64_t unusable_steps_ = 0;
+  std::int64_t unusable_steps_ = 0, unused_sightings_ = 0;
+  bool any_landmark_ = false;
   int exit_code_ = 0;
   std::string status_ = "done";
 };

@@ -16,6 +16,7 @@
 #include <libslam/io/rawlog_player.hpp>
 #include <libslam/io/truth_reader.hpp>
 #include <libslam/pipeline/factory.hpp>
+#include <libslam/result/atomic_file.hpp>
 #include <libslam/result/recorder.hpp>
 
 namespace {
@@ -115,6 +116,7 @@ int run(const std::string& config, const std::string& rawlog, const std::string&
   OdometryReader odometry(parameters.input);
   AccumulatedMotion motion(parameters);
   Recorder recorder({directory, true, 0.0, true});
+  replace_file(std::filesystem::path(directory) / "config.yaml", to_yaml(parameters));
   double cpu_s = 0.0;
   std::int64_t index = 0;
   while (const auto step = player.next()) {

@@ -114,6 +114,7 @@ TEST_F(SlamRun, InterruptionsAtAnyMomentLeaveAValidRunDirectory) {
   for (const int delay_ms : {150, 370, 810}) {
     std::filesystem::remove_all(path("run"));
     const pid_t child = fork();
+    ASSERT_NE(child, -1);
     if (child == 0) {
       (void)!freopen(path("out").c_str(), "w", stdout);
       (void)!freopen(path("err").c_str(), "w", stderr);
@@ -121,7 +122,7 @@ TEST_F(SlamRun, InterruptionsAtAnyMomentLeaveAValidRunDirectory) {
             path("run").c_str(), nullptr);
       _exit(127);
     }
-    while (!std::filesystem::exists(path("run/trajectory.csv")))
+    for (int i = 0; i < 4000 && !std::filesystem::exists(path("run/trajectory.csv")); ++i)
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
     std::this_thread::sleep_for(std::chrono::milliseconds(delay_ms));
     kill(child, SIGINT);

@@ -68,9 +68,9 @@ SI units and radians; degrees only in keys that end in `_deg`.
 
 }  // namespace
 
-std::string help_text() {
+std::string help_text(const ParameterTable& table) {
   std::string text;
-  for (const ParameterEntry& entry : list_parameters({})) {
+  for (const ParameterEntry& entry : list_parameters(table)) {
     text += entry.name + " = " + shown_value(entry) + "\n";
     text += wrap(std::string("(").append(describe_domain(entry)).append(")"), "      ");
     text += wrap(entry.description.text, "      ");
@@ -78,19 +78,29 @@ std::string help_text() {
   return text;
 }
 
-std::string help_markdown() {
-  std::string page(kIntroduction);
-  std::string section;
-  for (const ParameterEntry& entry : list_parameters({})) {
+std::string help_tables(const ParameterTable& table, int level) {
+  std::string page, section;
+  for (const ParameterEntry& entry : list_parameters(table)) {
     if (entry.section() != section) {
       section = entry.section();
-      page += "\n## `" + section + "`\n\n| key | default | value | meaning |\n|---|---|---|---|\n";
+      page.append("\n").append(static_cast<std::size_t>(level), '#').append(" `").append(section);
+      page += "`\n\n| key | default | value | meaning |\n|---|---|---|---|\n";
     }
     page += "| `" + std::string(entry.key()) + "` | `" + shown_value(entry) + "` | " +
             escape_cell(describe_domain(entry)) + " | " + escape_cell(entry.description.text) +
             " |\n";
   }
   return page;
+}
+
+std::string help_text() {
+  Parameters defaults;
+  return help_text(ParameterTable(defaults));
+}
+
+std::string help_markdown() {
+  Parameters defaults;
+  return std::string(kIntroduction) + help_tables(ParameterTable(defaults));
 }
 
 }  // namespace libslam

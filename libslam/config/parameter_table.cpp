@@ -25,20 +25,6 @@ std::string write_real(double value) {
   return {text.data(), end.ptr};
 }
 
-template <typename T>
-constexpr ParameterType type_of() {
-  if constexpr (std::same_as<T, bool>) {
-    return ParameterType::kBool;
-  } else if constexpr (std::same_as<T, int>) {
-    return ParameterType::kInteger;
-  } else if constexpr (std::same_as<T, double>) {
-    return ParameterType::kReal;
-  } else {
-    static_assert(std::same_as<T, std::string>);
-    return ParameterType::kText;
-  }
-}
-
 std::string write_value(bool value) {
   return value ? "true" : "false";
 }
@@ -52,41 +38,12 @@ std::string write_value(const std::string& value) {
   return value;
 }
 
-/// Visits sections with their full names.
-class SectionVisitor {
- public:
-  std::string full_name(std::string_view key) const {
-    return prefix_.empty() ? std::string(key) : prefix_ + "." + std::string(key);
-  }
-
- protected:
-  template <typename Visitor, typename Section>
-  void descend(Visitor& visitor, std::string_view name, Section& section) {
-    const std::string outer = prefix_;
-    prefix_ = full_name(name);
-    section.describe(visitor);
-    prefix_ = outer;
-  }
-
- private:
-  std::string prefix_;
-};
-
-class Lister : public SectionVisitor {
- public:
-  template <typename T>
-  void value(std::string_view name, T& field, const Describe& description) {
-    entries.push_back({full_name(name), type_of<T>(), write_value(field), description});
-  }
-  template <typename Section>
-  void section(std::string_view name, Section& section) {
-    sections.push_back(full_name(name));
-    descend(*this, name, section);
-  }
-
-  std::vector<ParameterEntry> entries;
-  std::vector<std::string> sections;
-};
+ParameterEntry entry_of(const ParameterTable::Field& field) {
+  // The alternatives of the variant stand in the order of ParameterType.
+  return {field.name, static_cast<ParameterType>(field.value.index()),
+          std::visit([](const auto* value) { return write_value(*value); }, field.value),
+          field.description};
+}
 
 // Names and values beyond any sensible length are compared by their beginning, which bounds the
 // work.
@@ -148,33 +105,14 @@ bool is_in_domain(const T& value, const Describe& description) {
   }
 }
 
-class Assigner : public SectionVisitor {
- public:
-  Assigner(std::string_view name, std::string_view text) : name_(name), text_(text) {}
-
-  template <typename T>
-  void value(std::string_view name, T& field, const Describe& description) {
-    if (found || full_name(name) != name_) {
-      return;
-    }
-    found = true;
-    T parsed{};
-    if (!parse(text_, parsed) || !is_in_domain(parsed, description)) {
-      reject({full_name(name), type_of<T>(), {}, description}, text_);
-    }
-    field = parsed;
+template <typename T>
+void assign(const ParameterTable::Field& field, T* target, std::string_view text) {
+  T parsed{};
+  if (!parse(text, parsed) || !is_in_domain(parsed, field.description)) {
+    reject(entry_of(field), text);
   }
-  template <typename Section>
-  void section(std::string_view name, Section& section) {
-    is_section = is_section || full_name(name) == name_;
-    descend(*this, name, section);
-  }
-
-  bool found = false, is_section = false;
-
- private:
-  std::string_view name_, text_;
-};
+  *target = parsed;
+}
 
 std::string_view last_word(std::string_view name) {
   return name.substr(name.rfind('.') + 1);
@@ -183,45 +121,50 @@ std::string_view last_word(std::string_view name) {
 }  // namespace
 
 std::string_view ParameterEntry::section() const {
-  return std::string_view(name).substr(0, name.rfind('.'));
+  const std::size_t dot = name.rfind('.');
+  return dot == std::string::npos ? std::string_view() : std::string_view(name).substr(0, dot);
 }
 
 std::string_view ParameterEntry::key() const {
   return last_word(name);
 }
 
-std::vector<ParameterEntry> list_parameters(const Parameters& parameters) {
-  Parameters copy = parameters;  // `describe` serves readers and writers alike, so it is not const
-  Lister lister;
-  copy.describe(lister);
-  return std::move(lister.entries);
+std::vector<ParameterEntry> list_parameters(const ParameterTable& table) {
+  std::vector<ParameterEntry> entries;
+  for (const ParameterTable::Field& field : table.fields()) {
+    entries.push_back(entry_of(field));
+  }
+  return entries;
 }
 
-std::vector<std::string> list_sections() {
-  Parameters defaults;
-  Lister lister;
-  defaults.describe(lister);
-  return std::move(lister.sections);
+std::vector<ParameterEntry> list_parameters(const Parameters& parameters) {
+  Parameters copy = parameters;  // `describe` serves readers and writers alike, so it is not const
+  return list_parameters(ParameterTable(copy));
+}
+
+void assign_parameter(const ParameterTable& table, std::string_view name, std::string_view value) {
+  const auto& fields = table.fields();
+  const auto field = std::ranges::find(fields, name, &ParameterTable::Field::name);
+  if (field != fields.end()) {
+    std::visit([&](auto* target) { assign(*field, target, value); }, field->value);
+  } else if (std::ranges::find(table.sections(), name) != table.sections().end()) {
+    throw ConfigError(std::string(name) + ": is a section, set one of its keys");
+  } else {
+    throw ConfigError("unknown key " + quote_for_message(name) +
+                      "; nearest valid key: " + find_nearest_name(table, name));
+  }
 }
 
 void assign_parameter(Parameters& parameters, std::string_view name, std::string_view value) {
-  Assigner assigner(name, value);
-  parameters.describe(assigner);
-  if (assigner.is_section) {
-    throw ConfigError(std::string(name) + ": is a section, set one of its keys");
-  }
-  if (!assigner.found) {
-    throw ConfigError("unknown key " + quote_for_message(name) +
-                      "; nearest valid key: " + find_nearest_name(name));
-  }
+  assign_parameter(ParameterTable(parameters), name, value);
 }
 
-std::string find_nearest_name(std::string_view name) {
+std::string find_nearest_name(const ParameterTable& table, std::string_view name) {
   // Names are compared by their last word first; the whole name decides between equal words.
   name = name.substr(0, kLongestCompared);
-  std::vector<std::string> candidates = list_sections();
-  for (const ParameterEntry& entry : list_parameters({})) {
-    candidates.push_back(entry.name);
+  std::vector<std::string> candidates = table.sections();
+  for (const ParameterTable::Field& field : table.fields()) {
+    candidates.push_back(field.name);
   }
   return *std::ranges::min_element(candidates, {}, [&](const std::string& candidate) {
     return std::tuple(edit_distance(last_word(name), last_word(candidate)),

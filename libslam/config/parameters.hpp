@@ -2,25 +2,13 @@
 // Every parameter of a run: its default, unit, range and one sentence, in one place.
 //
 // Each struct describes itself to a visitor; the YAML loader, `--help-config`, `--set`, the
-// effective configuration and config/README.md are all visits of the same description. Visitor
-// concept:  v.value(name, T& field, Describe{...});  v.section(name, Sub& sub); with T one of bool,
-// int, double, std::string.
+// effective configuration and config/README.md are all visits of the same description.
 
-#include <limits>
 #include <string>
-#include <string_view>
-#include <vector>
+
+#include <libslam/config/description.hpp>
 
 namespace libslam {
-
-/// What the description says about a parameter besides its name.
-struct Describe {
-  std::string_view unit;  ///< "m", "rad", "1" ...
-  std::string_view text;  ///< one sentence
-  double min = -std::numeric_limits<double>::infinity();
-  double max = std::numeric_limits<double>::infinity();
-  std::vector<std::string_view> choices = {};  ///< of a string parameter; empty: any
-};
 
 inline constexpr double kPi = 3.141592653589793;
 

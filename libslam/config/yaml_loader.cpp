@@ -12,16 +12,16 @@ namespace {
 /// Applies a parsed document to parameters, in file order.
 class DocumentLoader {
  public:
-  DocumentLoader(const std::string& file_name, ParameterPlaces* places)
-      : file_name_(file_name), places_(places), sections_(list_sections()) {}
+  DocumentLoader(const ParameterTable& table, const std::string& file_name, ParameterPlaces* places)
+      : table_(table), file_name_(file_name), places_(places) {}
 
-  void load(const YamlNode& mapping, const std::string& section, Parameters& parameters) const {
+  void load(const YamlNode& mapping, const std::string& section) const {
     for (const YamlEntry& entry : mapping.entries) {
       const std::string name = section.empty() ? entry.key : section + "." + entry.key;
-      if (std::ranges::find(sections_, name) != sections_.end()) {
-        load_section(entry, name, parameters);
+      if (std::ranges::find(table_.sections(), name) != table_.sections().end()) {
+        load_section(entry, name);
       } else {
-        load_parameter(entry, name, parameters);
+        load_parameter(entry, name);
       }
     }
   }
@@ -31,22 +31,21 @@ class DocumentLoader {
     throw ConfigError(describe_place(file_name_, place) + ": " + message);
   }
 
-  void load_section(const YamlEntry& entry, const std::string& name, Parameters& parameters) const {
+  void load_section(const YamlEntry& entry, const std::string& name) const {
     if (entry.value.is_null()) {
       return;  // a section whose keys are all commented out
     }
     if (entry.value.kind != YamlNode::Kind::kMapping) {
       fail(entry.value.place, name + ": is a section, indented `key: value` lines are expected");
     }
-    load(entry.value, name, parameters);
+    load(entry.value, name);
   }
 
-  void load_parameter(const YamlEntry& entry, const std::string& name,
-                      Parameters& parameters) const {
+  void load_parameter(const YamlEntry& entry, const std::string& name) const {
     const auto known = std::ranges::find(entries_, name, &ParameterEntry::name);
     if (known == entries_.end()) {
       fail(entry.place, "unknown key " + quote_for_message(name) +
-                            "; nearest valid key: " + find_nearest_name(name));
+                            "; nearest valid key: " + find_nearest_name(table_, name));
     }
     const YamlNode& value = entry.value;
     if (value.kind != YamlNode::Kind::kScalar) {
@@ -59,7 +58,7 @@ class DocumentLoader {
       fail(value.place, name + ": is a text in quotes, expected is " + describe_domain(*known));
     }
     try {
-      assign_parameter(parameters, name, value.text);
+      assign_parameter(table_, name, value.text);
     } catch (const ConfigError& error) {
       fail(value.place, error.what());
     }
@@ -68,10 +67,10 @@ class DocumentLoader {
     }
   }
 
+  const ParameterTable& table_;
   const std::string& file_name_;
   ParameterPlaces* places_;
-  std::vector<std::string> sections_;
-  std::vector<ParameterEntry> entries_ = list_parameters({});
+  std::vector<ParameterEntry> entries_ = list_parameters(table_);
 };
 
 std::string quote_for_yaml(std::string_view text) {
@@ -107,6 +106,16 @@ void write_headings(const std::string& from, const std::string& to, std::string&
 
 }  // namespace
 
+void load_yaml(const ParameterTable& table, const YamlNode& mapping, const std::string& file_name,
+               ParameterPlaces* places) {
+  DocumentLoader(table, file_name, places).load(mapping, "");
+}
+
+void load_yaml(const ParameterTable& table, const std::filesystem::path& path,
+               ParameterPlaces* places) {
+  load_yaml(table, parse_yaml(read_config_text(path), path.string()), path.string(), places);
+}
+
 Parameters load_yaml(const std::filesystem::path& path, ParameterPlaces* places) {
   return load_yaml_text(read_config_text(path), path.string(), places);
 }
@@ -114,11 +123,12 @@ Parameters load_yaml(const std::filesystem::path& path, ParameterPlaces* places)
 Parameters load_yaml_text(std::string_view text, const std::string& file_name,
                           ParameterPlaces* places) {
   Parameters parameters;
-  DocumentLoader(file_name, places).load(parse_yaml(text, file_name), "", parameters);
+  load_yaml(ParameterTable(parameters), parse_yaml(text, file_name), file_name, places);
   return parameters;
 }
 
-void set_parameter(Parameters& parameters, std::string_view assignment, ParameterPlaces* places) {
+void set_parameter(const ParameterTable& table, std::string_view assignment,
+                   ParameterPlaces* places) {
   const std::string place = "--set " + quote_for_message(assignment) + ": ";
   const std::size_t equals = assignment.find('=');
   if (equals == std::string_view::npos) {
@@ -127,11 +137,9 @@ void set_parameter(Parameters& parameters, std::string_view assignment, Paramete
   const std::string name(assignment.substr(0, equals));
   const std::string_view value = assignment.substr(equals + 1);
   try {
-    Parameters changed = parameters;
-    assign_parameter(changed, name, value);
     // A text must survive the effective configuration: invalid UTF-8 of a command line would not.
     parse_yaml("value: " + quote_for_yaml(value), name);
-    parameters = std::move(changed);
+    assign_parameter(table, name, value);
   } catch (const ConfigError& error) {
     throw ConfigError(place + error.what());
   }
@@ -140,20 +148,30 @@ void set_parameter(Parameters& parameters, std::string_view assignment, Paramete
   }
 }
 
-std::string to_yaml(const Parameters& parameters) {
+void set_parameter(Parameters& parameters, std::string_view assignment, ParameterPlaces* places) {
+  set_parameter(ParameterTable(parameters), assignment, places);
+}
+
+std::string to_yaml(const ParameterTable& table) {
   std::string yaml;
   std::string section;
-  for (const ParameterEntry& entry : list_parameters(parameters)) {
+  for (const ParameterEntry& entry : list_parameters(table)) {
     const std::string next(entry.section());
     write_headings(section, next, yaml);
     section = next;
-    const auto depth = static_cast<std::size_t>(std::ranges::count(next, '.')) + 1;
+    const auto depth =
+        next.empty() ? 0 : static_cast<std::size_t>(std::ranges::count(next, '.')) + 1;
     const std::string indent(2 * depth, ' ');
     yaml +=
         indent + "# " + std::string(entry.description.text) + " (" + describe_domain(entry) + ")\n";
     yaml += indent + std::string(entry.key()) + ": " + write_value(entry) + "\n";
   }
   return yaml;
+}
+
+std::string to_yaml(const Parameters& parameters) {
+  Parameters copy = parameters;  // a table refers to what it could write
+  return to_yaml(ParameterTable(copy));
 }
 
 }  // namespace libslam

@@ -99,13 +99,16 @@ INSTANTIATE_TEST_SUITE_P(
         BadValue{"input.sensor_label", "a\nb", "not one line of text"}));
 
 TEST(ParameterTable, FindsTheNearestName) {
-  EXPECT_EQ(find_nearest_name("motion.trak_width"), "motion.track_width");
-  EXPECT_EQ(find_nearest_name("track_width"), "motion.track_width");
-  EXPECT_EQ(find_nearest_name("motion.sigma_range"), "measurement.sigma_range");
-  EXPECT_EQ(find_nearest_name("calibration.scale_left.enable"), "calibration.scale_left.enabled");
-  EXPECT_EQ(find_nearest_name("calibration.bias_steering.enable"),
+  Parameters p;
+  const ParameterTable table(p);
+  EXPECT_EQ(find_nearest_name(table, "motion.trak_width"), "motion.track_width");
+  EXPECT_EQ(find_nearest_name(table, "track_width"), "motion.track_width");
+  EXPECT_EQ(find_nearest_name(table, "motion.sigma_range"), "measurement.sigma_range");
+  EXPECT_EQ(find_nearest_name(table, "calibration.scale_left.enable"),
+            "calibration.scale_left.enabled");
+  EXPECT_EQ(find_nearest_name(table, "calibration.bias_steering.enable"),
             "calibration.bias_steering.enabled");
-  EXPECT_EQ(find_nearest_name("mesurement"), "measurement");
+  EXPECT_EQ(find_nearest_name(table, "mesurement"), "measurement");
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include <CLI/CLI.hpp>
 
 #include <libslam/config/version.hpp>
+#include <libslam/io/importers/censi.hpp>
 #include <libslam/io/importers/csv_log.hpp>
 #include <libslam/io/importers/imported_log.hpp>
 #include <libslam/io/importers/lost_in_the_woods.hpp>
@@ -43,6 +44,7 @@ struct Arguments {
   Steering steering = Steering::kAa3;
   double max_diameter = 2.0;
   CsvLogOptions csv;
+  CensiOptions censi;
 };
 
 /// The factors of `--distort`, by name. Throws std::invalid_argument.
@@ -117,14 +119,22 @@ ImportedLog load_csv(Arguments arguments) {
   return log;
 }
 
+ImportedLog load_censi(const Arguments& arguments) {
+  if (!arguments.distortions.empty())
+    throw std::invalid_argument(
+        "--distort: choose another --nominal-radius or --nominal-track instead");
+  return import_censi(arguments.directory, arguments.censi);
+}
+
 void report(const Arguments& arguments, const ImportedLog& log) {
   if (arguments.quiet) return;
   std::size_t sightings = 0;
   for (const auto& scan : log.scans) sightings += scan.sightings.size();
   std::cout << arguments.out << ": " << log.scenario << ", " << log.odometry.size()
-            << " odometry readings, " << log.scans.size() << " scans with " << sightings
-            << " landmark sightings, " << log.truth.path.poses.size() << " true poses, "
-            << log.truth.landmarks.size() << " true landmarks\n";
+            << " odometry readings, " << log.sensor_path.size() << " sensor poses, "
+            << log.scans.size() << " scans with " << sightings << " landmark sightings, "
+            << log.truth.path.poses.size() << " true poses, " << log.truth.landmarks.size()
+            << " true landmarks\n";
   if (!arguments.verbose) return;
   for (const auto& [name, value] : log.parameters)
     std::cout << "  " << name << " = " << value << '\n';
@@ -141,6 +151,8 @@ int import(const Arguments& arguments, const CLI::App& app) {
     distort_odometry(arguments, log);
   } else if (app.got_subcommand("victoria-park")) {
     log = load_victoria_park(arguments);
+  } else if (app.got_subcommand("censi")) {
+    log = load_censi(arguments);
   } else {
     log = load_csv(arguments);
   }
@@ -193,6 +205,21 @@ void add_commands(CLI::App& app, Arguments& arguments) {
       ->transform(CLI::CheckedTransformer(
           std::map<std::string, Steering>{{"aa3", Steering::kAa3}, {"drs", Steering::kDrs}}));
   park->add_option("--max-diameter", arguments.max_diameter, "Leave out thicker trunks [m]")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  auto* censi = add_data_set(app, arguments, "censi", "Odometry calibration of Censi et al.");
+  censi
+      ->add_option("--subset", arguments.censi.subset,
+                   "Mounting of the laser: lstraight, l90 or lmov; with _0, _1, _2 a third of it")
+      ->required();
+  censi
+      ->add_option("--nominal-radius", arguments.censi.nominal_radius,
+                   "Radius of both wheels that the odometry is computed with [m]")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  censi
+      ->add_option("--nominal-track", arguments.censi.nominal_track,
+                   "Track width that the odometry is computed with [m]")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   auto* csv = add_data_set(app, arguments, "csv", "CSV files of one's own", false);

@@ -163,12 +163,15 @@ struct CalibrationParameter {
   }
 };
 
-/// Section `calibration`: odometry parameters as state.
+/// Section `calibration`: odometry parameters, and the pose (x, y [m], phi [rad]) of a sensor that
+/// measures displacements, as state.
 struct CalibrationParameters {
   CalibrationParameter scale_left, scale_right;
   CalibrationParameter track_width{false, 1.0, 0.1, 0.0};
   CalibrationParameter scale_speed, scale_steering;
   CalibrationParameter bias_steering{false, 0.0, 0.02, 0.0};
+  CalibrationParameter sensor_x{false, 0.0, 0.05, 0.0}, sensor_y{false, 0.0, 0.05, 0.0};
+  CalibrationParameter sensor_phi{false, 0.0, 0.1, 0.0};
 
   void describe(auto& v) {
     v.section("scale_left", scale_left);
@@ -177,6 +180,9 @@ struct CalibrationParameters {
     v.section("scale_speed", scale_speed);
     v.section("scale_steering", scale_steering);
     v.section("bias_steering", bias_steering);
+    v.section("sensor_x", sensor_x);
+    v.section("sensor_y", sensor_y);
+    v.section("sensor_phi", sensor_phi);
   }
 };
 
@@ -187,7 +193,13 @@ struct FrontendParameters {
   double max_range = 1e6;
 
   void describe(auto& v) {
-    v.value("source", source, {"", "Where features come from.", 0, 0, {"range_bearing"}});
+    v.value("source", source,
+            {"",
+             "Where features come from: range-bearing observations, or the path that a sensor "
+             "reports of itself (odometry observations labelled input.sensor_label).",
+             0,
+             0,
+             {"range_bearing", "sensor_path"}});
     v.value("min_range", min_range, {"m", "Nearer observations are ignored.", 0});
     v.value("max_range", max_range, {"m", "Farther observations are ignored.", 0});
   }
@@ -199,9 +211,16 @@ struct MeasurementParameters {
   std::string noise = "auto";
   double sigma_range = 0.1;
   double sigma_bearing_deg = 1.0;
+  double sigma_displacement_xy = 0.001;
+  double sigma_displacement_heading_deg = 0.1;
 
   void describe(auto& v) {
-    v.value("model", model, {"", "Measurement model of landmarks.", 0, 0, {"range_bearing"}});
+    v.value("model", model,
+            {"",
+             "Measurement model: of landmarks, or of the displacement of a sensor (no map).",
+             0,
+             0,
+             {"range_bearing", "sensor_displacement"}});
     v.value(
         "noise", noise,
         {"",
@@ -213,6 +232,10 @@ struct MeasurementParameters {
     v.value("sigma_range", sigma_range, {"m", "Standard deviation of a range.", 1e-9});
     v.value("sigma_bearing_deg", sigma_bearing_deg,
             {"deg", "Standard deviation of a bearing.", 1e-9});
+    v.value("sigma_displacement_xy", sigma_displacement_xy,
+            {"m", "Standard deviation of a sensor's displacement along x and y, each.", 1e-9});
+    v.value("sigma_displacement_heading_deg", sigma_displacement_heading_deg,
+            {"deg", "Standard deviation of the turn of a displacement.", 1e-9});
   }
 };
 
@@ -255,12 +278,21 @@ struct AssociationParameters {
 /// Section `filter`.
 struct FilterParameters {
   std::string error_frame = "right_invariant";
+  std::string linearization = "estimate";
   double initial_sigma_xy = 0.0;
   double initial_sigma_heading_deg = 0.0;
 
   void describe(auto& v) {
     v.value("error_frame", error_frame,
             {"", "Error that the covariance describes.", 0, 0, {"standard", "right_invariant"}});
+    v.value(
+        "linearization", linearization,
+        {"",
+         "Where derivatives are taken: at the estimate, at the first estimates of landmarks and "
+         "the predicted pose, or at the truth (simulations only).",
+         0,
+         0,
+         {"estimate", "first_estimate", "at_truth"}});
     v.value("initial_sigma_xy", initial_sigma_xy,
             {"m", "Standard deviation of the start position.", 0});
     v.value("initial_sigma_heading_deg", initial_sigma_heading_deg,

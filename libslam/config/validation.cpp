@@ -26,19 +26,6 @@ std::array<CalibrationEntry, 6> list_calibration(const CalibrationParameters& c)
            {"bias_steering", c.bias_steering, false, false, true}}};
 }
 
-/// A program can fill in what no loader would accept.
-void check_ranges(const Parameters& parameters, Conflicts& conflicts) {
-  Parameters copy = parameters;
-  for (const ParameterEntry& entry : list_parameters(parameters)) {
-    try {
-      assign_parameter(copy, entry.name, entry.value);
-    } catch (const ConfigError& error) {
-      const std::string message = error.what();
-      conflicts.push_back({{entry.name}, message.substr(entry.name.size() + 2)});
-    }
-  }
-}
-
 void check_no_odometry(const Parameters& p, Conflicts& conflicts) {
   if (!(p.motion.no_odometry_sigma_xy > 0.0) || !(p.motion.no_odometry_sigma_heading_deg > 0.0)) {
     conflicts.push_back(
@@ -126,6 +113,45 @@ void check_frontend(const Parameters& p, Conflicts& conflicts) {
   }
 }
 
+/// Displacements of a sensor take the place of landmarks; the two do not mix.
+void check_displacement(const Parameters& p, Conflicts& conflicts) {
+  const bool measures = p.measurement.model == "sensor_displacement";
+  if (measures != (p.frontend.source == "sensor_path")) {
+    conflicts.push_back(
+        {{"measurement.model", "frontend.source"},
+         "sensor_displacement measures along a sensor_path, and nothing else does"});
+  }
+  for (const auto& [name, parameter] :
+       {std::pair("calibration.sensor_x.enabled", &p.calibration.sensor_x),
+        std::pair("calibration.sensor_y.enabled", &p.calibration.sensor_y),
+        std::pair("calibration.sensor_phi.enabled", &p.calibration.sensor_phi)}) {
+    if (parameter->enabled && !measures) {
+      conflicts.push_back({{name, "measurement.model"},
+                           "landmark models take the pose of the sensor from the log; only "
+                           "sensor_displacement estimates it"});
+    }
+  }
+  if (!measures) {
+    return;
+  }
+  if (p.input.sensor_label.empty()) {
+    conflicts.push_back({{"input.sensor_label", "measurement.model"},
+                         "the label tells the path of the sensor from the odometry of the robot"});
+  }
+  if (p.input.sensor_label == p.input.odometry_label && !p.input.sensor_label.empty()) {
+    conflicts.push_back({{"input.sensor_label", "input.odometry_label"},
+                         "the odometry of the robot cannot be its own measurement"});
+  }
+  if (p.input.odometry == "none") {
+    conflicts.push_back({{"measurement.model", "input.odometry"},
+                         "without odometry there is nothing to compare a displacement with"});
+  }
+  if (p.filter.linearization != "estimate") {
+    conflicts.push_back({{"filter.linearization", "measurement.model"},
+                         "displacements are linearized at the estimate"});
+  }
+}
+
 void check_association(const Parameters& p, Conflicts& conflicts) {
   const AssociationParameters& a = p.association;
   if (!(a.gate_probability > 0.0)) {
@@ -153,6 +179,30 @@ void check_association(const Parameters& p, Conflicts& conflicts) {
   }
 }
 
+void check_filter(const Parameters& p, TruthAccess truth, Conflicts& conflicts) {
+  const FilterParameters& f = p.filter;
+  if (f.linearization == "estimate") {
+    return;
+  }
+  if (f.error_frame != "standard") {
+    conflicts.push_back({{"filter.linearization", "filter.error_frame"},
+                         "each of the two alone keeps the unobservable directions free of "
+                         "information; the invariant error is derived at the estimate, take the "
+                         "standard frame for another point"});
+  }
+  if (f.linearization != "at_truth") {
+    return;
+  }
+  if (truth == TruthAccess::kNone) {
+    conflicts.push_back({{"filter.linearization"},
+                         "only the simulated runs of a campaign know the truth; a log does not"});
+  }
+  if (p.association.method != "known") {
+    conflicts.push_back({{"filter.linearization", "association.method"},
+                         "the true place of a landmark is known by its identity"});
+  }
+}
+
 void check_policies(const Parameters& p, Conflicts& conflicts) {
   if (p.policies.update_period_s > 0.0 && p.policies.update_every_n > 1) {
     conflicts.push_back({{"policies.update_every_n", "policies.update_period_s"},
@@ -162,24 +212,39 @@ void check_policies(const Parameters& p, Conflicts& conflicts) {
 
 }  // namespace
 
-std::vector<Conflict> find_conflicts(const Parameters& parameters) {
+std::vector<Conflict> find_range_conflicts(const ParameterTable& table) {
   Conflicts conflicts;
-  check_ranges(parameters, conflicts);
+  for (const ParameterEntry& entry : list_parameters(table)) {
+    try {
+      assign_parameter(table, entry.name, entry.value);
+    } catch (const ConfigError& error) {
+      const std::string message = error.what();
+      conflicts.push_back({{entry.name}, message.substr(entry.name.size() + 2)});
+    }
+  }
+  return conflicts;
+}
+
+std::vector<Conflict> find_conflicts(const Parameters& parameters, TruthAccess truth) {
+  Parameters copy = parameters;
+  Conflicts conflicts = find_range_conflicts(ParameterTable(copy));
   check_input(parameters, conflicts);
   check_calibration(parameters, conflicts);
   check_frontend(parameters, conflicts);
+  check_displacement(parameters, conflicts);
   check_association(parameters, conflicts);
+  check_filter(parameters, truth, conflicts);
   check_policies(parameters, conflicts);
   return conflicts;
 }
 
-void validate(const Parameters& parameters, const ParameterPlaces& places) {
-  const std::vector<Conflict> conflicts = find_conflicts(parameters);
+void throw_first(const std::vector<Conflict>& conflicts, const ParameterTable& table,
+                 const ParameterPlaces& places) {
   if (conflicts.empty()) {
     return;
   }
   const Conflict& first = conflicts.front();
-  const auto entries = list_parameters(parameters);
+  const auto entries = list_parameters(table);
   std::string place, names;
   for (const std::string& key : first.keys) {
     const auto known = places.find(key);
@@ -190,6 +255,11 @@ void validate(const Parameters& parameters, const ParameterPlaces& places) {
     names += (names.empty() ? "" : " with ") + key + " = " + entry->value;
   }
   throw ConfigError(place + names + ": " + first.reason);
+}
+
+void validate(const Parameters& parameters, const ParameterPlaces& places, TruthAccess truth) {
+  Parameters copy = parameters;
+  throw_first(find_conflicts(parameters, truth), ParameterTable(copy), places);
 }
 
 }  // namespace libslam

@@ -16,14 +16,25 @@ struct Conflict {
   std::string reason;             ///< one sentence
 };
 
-/// All conflicts, in the order of the sections; empty if the parameters can run.
-///
-/// Values out of their own range are conflicts too, because parameters may be filled in by a
-/// program.
-std::vector<Conflict> find_conflicts(const Parameters& parameters);
+/// Parameters that are out of their own range. Parameters may be filled in by a program, with what
+/// no loader would accept.
+std::vector<Conflict> find_range_conflicts(const ParameterTable& table);
 
-/// Throws ConfigError with the first conflict, in one line that begins with the place of the first
-/// of its keys that `places` knows.
-void validate(const Parameters& parameters, const ParameterPlaces& places = {});
+/// Throws ConfigError with the first conflict, if there is one, in one line that begins with the
+/// place of the first of its keys that `places` knows; `table` has the values.
+void throw_first(const std::vector<Conflict>& conflicts, const ParameterTable& table,
+                 const ParameterPlaces& places);
+
+/// Whether the run is one of a simulation that tells the filter the truth, as the ideal filter of
+/// consistency studies needs it.
+enum class TruthAccess { kNone, kSimulation };
+
+/// All conflicts, range conflicts first; empty if the parameters can run.
+std::vector<Conflict> find_conflicts(const Parameters& parameters,
+                                     TruthAccess truth = TruthAccess::kNone);
+
+/// Throws ConfigError with the first conflict, as `throw_first` does.
+void validate(const Parameters& parameters, const ParameterPlaces& places = {},
+              TruthAccess truth = TruthAccess::kNone);
 
 }  // namespace libslam

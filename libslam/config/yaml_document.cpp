@@ -129,7 +129,7 @@ class DocumentReader {
         break;
       case YAML_SEQUENCE_START_EVENT:
         node.kind = YamlNode::Kind::kSequence;
-        skip_items(depth);
+        read_items(node, depth);
         break;
       default:
         fail(node.place, "aliases (*name) are not supported, write the value out");
@@ -162,14 +162,14 @@ class DocumentReader {
     }
   }
 
-  void skip_items(int depth) {
+  void read_items(YamlNode& sequence, int depth) {
     for (;;) {
       Event item;
       next(item);
       if (item.type() == YAML_SEQUENCE_END_EVENT) {
         return;
       }
-      read_node(item, depth + 1);
+      sequence.items.push_back(read_node(item, depth + 1));
     }
   }
 

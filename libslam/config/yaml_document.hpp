@@ -28,7 +28,8 @@ struct YamlNode {
   FilePlace place;
   std::string text;                ///< of a scalar, quotes and escapes resolved
   bool quoted = false;             ///< the scalar was written in quotes or as a block
-  std::vector<YamlEntry> entries;  ///< of a mapping; a sequence keeps no content
+  std::vector<YamlEntry> entries;  ///< of a mapping
+  std::vector<YamlNode> items;     ///< of a sequence
 
   /// A plain scalar that stands for nothing: `key:`, `key: ~` or `key: null`.
   bool is_null() const;

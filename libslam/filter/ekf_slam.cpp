@@ -15,16 +15,23 @@ namespace {
 constexpr double kObservedRatio = 0.5;
 
 EkfSlamParts checked(EkfSlamParts parts) {
-  if (!parts.motion || !parts.measurement || !parts.associator || !parts.frame)
+  if (!parts.motion || !parts.frame)
+    throw std::invalid_argument("EkfSlam needs a motion model and an error frame");
+  if (!parts.displacement && (!parts.measurement || !parts.associator))
     throw std::invalid_argument(
-        "EkfSlam needs a motion model, a measurement model, an associator and an error frame");
+        "EkfSlam needs a measurement model and an associator, or a displacement model");
+  if (parts.displacement && parts.linearization)
+    throw std::invalid_argument("EkfSlam linearizes displacements at the estimate");
   return parts;
 }
 
-std::vector<double> nominal_values(const MotionModel& motion) {
+/// Scales for the excitation: the motion itself is what shows the pose of a sensor.
+std::vector<double> nominal_values(const EkfSlamParts& parts) {
   std::vector<double> nominal;
-  for (const auto& parameter : motion.calibration())
+  for (const auto& parameter : parts.motion->calibration())
     nominal.push_back(parameter.prior_mean == 0.0 ? parameter.prior_sigma : parameter.prior_mean);
+  if (parts.displacement)
+    nominal.resize(nominal.size() + parts.displacement->model().calibration().size(), 1.0);
   return nominal;
 }
 
@@ -50,8 +57,8 @@ class EkfSlam::PairTest final : public Compatibility {
   std::optional<Match> test(std::size_t feature, std::size_t landmark, double limit) override {
     const BlockId block = filter_.parts_.registry.landmarks()[landmark].block;
     if (std::isfinite(limit) && far_apart(feature, block, limit)) return std::nullopt;
-    filter_.parts_.measurement->linearize(filter_.state_, filter_.pose_, block, features_[feature],
-                                          measurement_);
+    filter_.linearizer_.linearize(*filter_.parts_.measurement, filter_.state_, filter_.pose_, block,
+                                  features_[feature], measurement_);
     const Innovation innovation = filter_.ekf_.innovate(filter_.state_, measurement_);
     return Match{innovation.mahalanobis2, innovation.log_det};
   }
@@ -85,34 +92,53 @@ class EkfSlam::PairTest final : public Compatibility {
 EkfSlam::EkfSlam(EkfSlamParts parts)
     : parts_(checked(std::move(parts))),
       ekf_(std::move(parts_.frame)),
-      excitation_(nominal_values(*parts_.motion)) {
-  ekf_.frame().require_supported(parts_.measurement->landmark_spec());
+      linearizer_(std::move(parts_.linearization)),
+      excitation_(nominal_values(parts_)) {
+  if (parts_.measurement) {
+    ekf_.frame().require_supported(parts_.measurement->landmark_spec());
+    linearizer_.require_supported(parts_.measurement->landmark_spec());
+  }
   pose_ = state_.add({"pose", Chart::kSE2, 3, WorldRole::kPose}, Eigen::Vector3d::Zero(),
                      parts_.cov_start);
+  linearizer_.add_block(state_, pose_);
   add_calibration();
 }
 
 void EkfSlam::add_calibration() {
-  for (const auto& parameter : parts_.motion->calibration())
-    calibration_.push_back(
+  motion_calibration_ = add_blocks(parts_.motion->calibration());
+  if (parts_.displacement)
+    sensor_calibration_ = add_blocks(parts_.displacement->model().calibration());
+  calibration_ = motion_calibration_;
+  calibration_.insert(calibration_.end(), sensor_calibration_.begin(), sensor_calibration_.end());
+  calibration_jacobian_.resize(3, static_cast<Eigen::Index>(calibration_.size()));
+}
+
+CalibrationBlocks EkfSlam::add_blocks(const std::vector<CalibrationSpec>& parameters) {
+  CalibrationBlocks blocks;
+  for (const auto& parameter : parameters) {
+    parameters_.push_back(parameter);
+    blocks.push_back(
         state_.add({parameter.name, Chart::kVector, 1, WorldRole::kNone},
                    Eigen::VectorXd::Constant(1, parameter.prior_mean),
                    Eigen::MatrixXd::Constant(1, 1, parameter.prior_sigma * parameter.prior_sigma)));
-  calibration_jacobian_.resize(3, static_cast<Eigen::Index>(calibration_.size()));
+    linearizer_.add_block(state_, blocks.back());
+  }
+  return blocks;
 }
 
 void EkfSlam::propagate(const MotionAction* action) {
   const PhaseTimer timer(times_, Phase::kPredict);
   if (action == nullptr) {
     state_.covariance().add_noise(state_.offset(pose_), parts_.cov_no_odometry);
+    linearizer_.stood(state_, pose_);
     return;
   }
-  parts_.motion->linearize(state_, pose_, calibration_, *action, step_);
+  linearizer_.linearize(*parts_.motion, state_, pose_, motion_calibration_, *action, step_);
   if (!calibration_.empty()) observe_excitation(action->dt);
   ekf_.propagate(state_, step_);
-  const auto& parameters = parts_.motion->calibration();
+  linearizer_.moved(state_, pose_);
   for (std::size_t i = 0; i < calibration_.size(); ++i) {
-    const double walk = parameters[i].random_walk;
+    const double walk = parameters_[i].random_walk;
     if (walk > 0.0 && action->dt > 0.0)
       state_.covariance().add_noise(state_.offset(calibration_[i]),
                                     BlockMatrix::Constant(1, 1, walk * walk * action->dt));
@@ -128,14 +154,36 @@ void EkfSlam::observe_excitation(double dt) {
     for (std::size_t i = 0; i < calibration_.size(); ++i)
       if (block == calibration_[i])
         calibration_jacobian_.col(static_cast<Eigen::Index>(i)) = to_robot * jacobian;
+  if (parts_.displacement) {
+    Eigen::Vector3d moved = to_robot * (step_.estimate - state_.estimate(pose_));
+    moved[2] = wrap_angle(moved[2]);
+    calibration_jacobian_.rightCols(static_cast<Eigen::Index>(sensor_calibration_.size())) =
+        parts_.displacement->model().excitation(moved);
+  }
   excitation_.observe(calibration_jacobian_, to_robot * step_.cov_noise * to_robot.transpose(), dt);
   considered_.clear();
   for (std::size_t i = 0; i < calibration_.size(); ++i)
     if (!excitation_.excited(i)) considered_.push_back(calibration_[i]);
 }
 
+UpdateOutcome EkfSlam::measure_displacement(const Feature& reading) {
+  const PhaseTimer timer(times_, Phase::kUpdate);
+  const DisplacementOutcome done =
+      parts_.displacement->apply(state_, ekf_, pose_, sensor_calibration_, considered_, reading);
+  UpdateOutcome outcome;
+  outcome.nis = done.correction.nis;
+  outcome.nis_dof = done.correction.dof;
+  outcome.accepted = done.correction.applied ? 1 : 0;
+  outcome.gated = done.measured && !done.correction.applied ? 1 : 0;
+  return outcome;
+}
+
 UpdateOutcome EkfSlam::update(std::span<const Feature> features) {
   UpdateOutcome outcome;
+  if (parts_.displacement) {
+    for (const Feature& reading : features) outcome += measure_displacement(reading);
+    return outcome;
+  }
   {
     const PhaseTimer timer(times_, Phase::kAssociate);
     PairTest test(*this, features);
@@ -148,13 +196,16 @@ UpdateOutcome EkfSlam::update(std::span<const Feature> features) {
       if (verdict.outcome == Outcome::kAmbiguous) ++outcome.ambiguous;
       if (verdict.outcome != Outcome::kPaired) continue;
       const BlockId landmark = parts_.registry.landmarks()[verdict.landmark].block;
-      parts_.measurement->linearize(state_, pose_, landmark, features[i], accepted_.emplace_back());
+      linearizer_.linearize(*parts_.measurement, state_, pose_, landmark, features[i],
+                            accepted_.emplace_back());
     }
   }
   {
     const PhaseTimer timer(times_, Phase::kUpdate);
+    const Eigen::Vector2d before = state_.estimate(pose_).head<2>();
     const Correction correction = ekf_.correct(state_, pose_, accepted_, considered_);
     if (correction.applied) {
+      linearizer_.corrected(state_, pose_, before);
       outcome.accepted = static_cast<int>(accepted_.size());
       outcome.nis = correction.nis;
       outcome.nis_dof = correction.dof;
@@ -175,8 +226,9 @@ void EkfSlam::add_landmarks(std::span<const Feature> features, UpdateOutcome& ou
     if (verdict.outcome == Outcome::kPaired) parts_.registry.record_sighting(verdict.landmark);
   for (std::size_t i = 0; i < features.size(); ++i) {
     if (verdicts_[i].outcome != Outcome::kNew) continue;
-    parts_.measurement->initialize(state_, pose_, features[i], initialization_);
+    linearizer_.initialize(*parts_.measurement, state_, pose_, features[i], initialization_);
     const BlockId block = state_.augment(parts_.measurement->landmark_spec(), initialization_);
+    linearizer_.added(state_, pose_, block, features[i].id);
     verdicts_[i].landmark = parts_.registry.size();
     parts_.registry.add(block, features[i].id);
     ++outcome.new_landmarks;
@@ -188,7 +240,7 @@ void EkfSlam::add_landmarks(std::span<const Feature> features, UpdateOutcome& ou
 std::vector<CalibrationValue> EkfSlam::calibration() const {
   std::vector<CalibrationValue> values;
   for (std::size_t i = 0; i < calibration_.size(); ++i) {
-    const CalibrationSpec& parameter = parts_.motion->calibration()[i];
+    const CalibrationSpec& parameter = parameters_[i];
     const double sigma = std::sqrt(state_.covariance_of(calibration_[i])(0, 0));
     values.push_back(
         {parameter.name, state_.estimate(calibration_[i])[0], sigma, parameter.prior_mean,

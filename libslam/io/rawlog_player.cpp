@@ -112,12 +112,18 @@ void RawlogPlayer::dispatch(const RawlogEntry& entry) {
   }
 }
 
+/// The path that a sensor reports of itself is an observation, not the odometry of the robot.
+bool RawlogPlayer::is_sensor_path(const CObservation& observation) const {
+  const std::string& label = options_.input.sensor_label;
+  return !label.empty() && label == observation.sensorLabel;
+}
+
 bool RawlogPlayer::wanted(const CObservation& observation) const {
   const auto matches = [&](const std::string& label) {
     return label.empty() || label == observation.sensorLabel;
   };
   if (dynamic_cast<const CObservationOdometry*>(&observation))
-    return !is_pair_log_ && matches(options_.input.odometry_label);
+    return is_sensor_path(observation) || (!is_pair_log_ && matches(options_.input.odometry_label));
   if (dynamic_cast<const CObservationBearingRange*>(&observation))
     return matches(options_.input.sensor_label);
   return dynamic_cast<const mrpt::obs::CObservationComment*>(&observation) == nullptr;
@@ -145,7 +151,8 @@ void RawlogPlayer::add_observation(const CObservation::Ptr& observation, const R
     return;
   }
   if (!wanted(*observation)) return;
-  if (auto* odometry = dynamic_cast<CObservationOdometry*>(observation.get())) {
+  if (auto* odometry = dynamic_cast<CObservationOdometry*>(observation.get());
+      odometry != nullptr && !is_sensor_path(*observation)) {
     add_odometry(*odometry, entry);
     return;
   }

@@ -69,6 +69,7 @@ class RawlogPlayer {
                        std::uint64_t bytes);
   void add_odometry(mrpt::obs::CObservationOdometry& odometry, const RawlogEntry& entry);
   void add_frame(const RawlogEntry& entry);
+  bool is_sensor_path(const mrpt::obs::CObservation& observation) const;
   bool wanted(const mrpt::obs::CObservation& observation) const;
   std::deque<LogStep>& ready() { return is_pair_log_ ? pairs_.ready() : splitter_.ready(); }
   void account(LogStep& step);

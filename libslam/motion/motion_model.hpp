@@ -8,26 +8,15 @@
 // and     `sample` draws a new pose from the same distribution.
 
 #include <random>
-#include <string>
 #include <vector>
 
 #include <Eigen/Core>
 
 #include <libslam/data/motion_action.hpp>
+#include <libslam/state/calibration_spec.hpp>
 #include <libslam/state/gaussian_state.hpp>
 
 namespace libslam {
-
-/// A calibration parameter as a block of the state.
-struct CalibrationSpec {
-  std::string name;  ///< block name, e.g. "scale_left"
-  double prior_mean = 1.0;
-  double prior_sigma = 0.0;  ///< standard deviation of the prior, > 0
-  double random_walk = 0.0;  ///< standard deviation per sqrt(second)
-};
-
-/// The calibration blocks of a model inside a state, in the order of `calibration()`.
-using CalibrationBlocks = std::vector<BlockId>;
 
 class MotionModel {
  public:

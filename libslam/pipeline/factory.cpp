@@ -4,7 +4,9 @@
 #include <libslam/association/known.hpp>
 #include <libslam/association/nearest_neighbour.hpp>
 #include <libslam/frontend/range_bearing_observation.hpp>
+#include <libslam/frontend/sensor_path_observation.hpp>
 #include <libslam/measurement/range_bearing.hpp>
+#include <libslam/measurement/sensor_displacement.hpp>
 #include <libslam/motion/ackermann.hpp>
 #include <libslam/motion/differential.hpp>
 #include <libslam/motion/odometry_increment.hpp>
@@ -20,18 +22,6 @@ constexpr std::int64_t kBeyondIdentities = std::int64_t{1} << 32;
 
 [[noreturn]] void throw_unknown(const std::string& what, const std::string& value) {
   throw std::invalid_argument("unknown " + what + " '" + value + "'");
-}
-
-std::unique_ptr<MotionModel> make_motion(const Parameters& p) {
-  const OdometrySource source =
-      p.input.odometry == "none" ? OdometrySource::kIncrements : odometry_source(p.input);
-  if (p.motion.model == "odometry_increment")
-    return std::make_unique<OdometryIncrement>(p.motion, p.calibration, source);
-  if (p.motion.model == "differential")
-    return std::make_unique<Differential>(p.motion, p.calibration, source);
-  if (p.motion.model == "ackermann")
-    return std::make_unique<Ackermann>(p.motion, p.calibration, source);
-  throw_unknown("motion model", p.motion.model);
 }
 
 std::unique_ptr<MeasurementModel> make_measurement(const Parameters& p) {
@@ -53,6 +43,16 @@ std::unique_ptr<Associator> make_associator(const Parameters& p, const Measureme
   throw_unknown("association method", p.association.method);
 }
 
+std::unique_ptr<LinearizationPoint> make_linearization_point(const Parameters& p,
+                                                             const TrueState* truth) {
+  if (p.filter.linearization == "estimate") return nullptr;
+  if (p.filter.linearization == "first_estimate") return std::make_unique<FirstEstimates>();
+  if (p.filter.linearization != "at_truth")
+    throw_unknown("point of linearization", p.filter.linearization);
+  if (truth == nullptr) throw std::invalid_argument("linearization at_truth without a truth");
+  return std::make_unique<TruthPoint>(*truth);
+}
+
 Eigen::Matrix3d planar_covariance(double sigma_xy, double sigma_heading_deg) {
   const Eigen::Vector3d sigma(sigma_xy, sigma_xy, sigma_heading_deg * kPi / 180.0);
   return sigma.cwiseAbs2().asDiagonal();
@@ -60,12 +60,31 @@ Eigen::Matrix3d planar_covariance(double sigma_xy, double sigma_heading_deg) {
 
 }  // namespace
 
-EkfSlamParts make_filter_parts(const Parameters& p) {
+std::unique_ptr<MotionModel> make_motion_model(const MotionParameters& motion,
+                                               const CalibrationParameters& calibration,
+                                               const InputParameters& input) {
+  const OdometrySource source =
+      input.odometry == "none" ? OdometrySource::kIncrements : odometry_source(input);
+  if (motion.model == "odometry_increment")
+    return std::make_unique<OdometryIncrement>(motion, calibration, source);
+  if (motion.model == "differential")
+    return std::make_unique<Differential>(motion, calibration, source);
+  if (motion.model == "ackermann") return std::make_unique<Ackermann>(motion, calibration, source);
+  throw_unknown("motion model", motion.model);
+}
+
+EkfSlamParts make_filter_parts(const Parameters& p, const TrueState* truth) {
   EkfSlamParts parts;
-  parts.motion = make_motion(p);
-  parts.measurement = make_measurement(p);
-  parts.associator = make_associator(p, *parts.measurement);
+  parts.motion = make_motion_model(p.motion, p.calibration, p.input);
+  if (p.measurement.model == "sensor_displacement") {
+    parts.displacement.emplace(std::make_unique<SensorDisplacement>(p.calibration),
+                               chi_square_quantile(p.association.gate_probability, 3));
+  } else {
+    parts.measurement = make_measurement(p);
+    parts.associator = make_associator(p, *parts.measurement);
+  }
   parts.frame = make_error_frame(p.filter.error_frame);
+  parts.linearization = make_linearization_point(p, truth);
   parts.registry =
       LandmarkRegistry(p.association.confirm_after, p.association.prune_after,
                        p.association.method == "known_or_nearest" ? kBeyondIdentities : 0);
@@ -81,6 +100,8 @@ std::unique_ptr<Frontend> make_frontend(const Parameters& p) {
     return std::make_unique<RangeBearingObservation>(p.frontend, p.measurement,
                                                      p.input.sensor_label,
                                                      p.association.method != "nearest_neighbour");
+  if (p.frontend.source == "sensor_path")
+    return std::make_unique<SensorPathObservation>(p.measurement, p.input.sensor_label);
   throw_unknown("front-end", p.frontend.source);
 }
 

@@ -9,9 +9,16 @@
 
 namespace libslam {
 
-/// The parts of the filter that `parameters` describe. Throws std::invalid_argument on a value that
+/// The motion model of a filter or of a simulated vehicle. Throws std::invalid_argument on a value
+/// that validation would have refused.
+std::unique_ptr<MotionModel> make_motion_model(const MotionParameters& motion,
+                                               const CalibrationParameters& calibration,
+                                               const InputParameters& input);
+
+/// The parts of the filter that `parameters` describe. `truth` is what `filter.linearization:
+/// at_truth` asks for, and must outlive the filter. Throws std::invalid_argument on a value that
 /// validation (config/validation.hpp) would have refused.
-EkfSlamParts make_filter_parts(const Parameters& parameters);
+EkfSlamParts make_filter_parts(const Parameters& parameters, const TrueState* truth = nullptr);
 
 std::unique_ptr<Frontend> make_frontend(const Parameters& parameters);
 

@@ -14,23 +14,28 @@ InputParameters reader_input(InputParameters input) {
 
 }  // namespace
 
-Pipeline::Pipeline(const Parameters& parameters)
+Pipeline::Pipeline(const Parameters& parameters, const TrueState* truth)
     : odometry_(reader_input(parameters.input)),
       ignore_odometry_(parameters.input.odometry == "none"),
       frontend_(make_frontend(parameters)),
       schedule_(parameters.policies.update_period_s, parameters.policies.update_every_n),
-      filter_(make_filter_parts(parameters)) {}
+      filter_(make_filter_parts(parameters, truth)) {}
 
 StepRecord Pipeline::process(const LogStep& step) {
   std::optional<MotionAction> action;
   if (step.action && !ignore_odometry_) action = odometry_.read(step);
-  if (step.action) filter_.propagate(action ? &*action : nullptr);
+  if (step.action) propagate(action ? &*action : nullptr);
   return update(step);
 }
 
 StepRecord Pipeline::process_frame(const LogStep& step) {
-  filter_.propagate(nullptr);
+  propagate(nullptr);
   return update(step);
+}
+
+void Pipeline::propagate(const MotionAction* action) {
+  filter_.propagate(action);
+  if (observer_ != nullptr) observer_->on_motion(action);
 }
 
 StepRecord Pipeline::update(const LogStep& step) {
@@ -41,7 +46,11 @@ StepRecord Pipeline::update(const LogStep& step) {
       frontend_->extract(*step.frame, batches_);
     }
     if (!batches_.empty() && schedule_.due(step.time))
-      for (const FeatureBatch& batch : batches_) last_update_ += filter_.update(batch);
+      for (const FeatureBatch& batch : batches_) {
+        const UpdateOutcome outcome = filter_.update(batch);
+        if (observer_ != nullptr) observer_->on_update(batch, outcome);
+        last_update_ += outcome;
+      }
   }
   StepRecord record;
   record.index = step.index;

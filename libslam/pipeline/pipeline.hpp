@@ -2,6 +2,7 @@
 // One step of a log through all parts: odometry -> filter <- association <- features.
 
 #include <memory>
+#include <span>
 #include <vector>
 
 #include <libslam/config/parameters.hpp>
@@ -14,10 +15,21 @@
 
 namespace libslam {
 
+/// Sees what the filter was given and what it made of it.
+class FilterObserver {
+ public:
+  virtual ~FilterObserver() = default;
+  /// The filter has moved; null: by a step without odometry.
+  virtual void on_motion(const MotionAction* action) = 0;
+  /// The filter has taken in the features of one observation.
+  virtual void on_update(std::span<const Feature> features, const UpdateOutcome& outcome) = 0;
+};
+
 class Pipeline {
  public:
   /// `parameters` must be valid (config/validation.hpp); throws std::invalid_argument otherwise.
-  explicit Pipeline(const Parameters& parameters);
+  /// `truth`: see make_filter_parts.
+  explicit Pipeline(const Parameters& parameters, const TrueState* truth = nullptr);
 
   /// Moves by the odometry of the step and updates with its frame if one is due. Throws
   /// UnusableOdometry (frontend/odometry.hpp) before anything has changed, and
@@ -26,6 +38,9 @@ class Pipeline {
   /// The same without the odometry of the step: for steps whose odometry is unusable.
   StepRecord process_frame(const LogStep& step);
 
+  /// `observer` must outlive its use here; null: none.
+  void observe(FilterObserver* observer) { observer_ = observer; }
+
   const EkfSlam& filter() const { return filter_; }
   const Frontend& frontend() const { return *frontend_; }
   const OdometryReader& odometry() const { return odometry_; }
@@ -33,6 +48,7 @@ class Pipeline {
   const UpdateOutcome& last_update() const { return last_update_; }
 
  private:
+  void propagate(const MotionAction* action);
   StepRecord update(const LogStep& step);
 
   OdometryReader odometry_;
@@ -40,6 +56,7 @@ class Pipeline {
   std::unique_ptr<Frontend> frontend_;
   UpdateSchedule schedule_;
   EkfSlam filter_;
+  FilterObserver* observer_ = nullptr;
   UpdateOutcome last_update_;
   std::vector<FeatureBatch> batches_;
 };

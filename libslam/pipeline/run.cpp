@@ -144,7 +144,7 @@ class Run {
       end(6, "diverged: pose, calibration or a variance is not a finite number");
       return;
     }
-    any_landmark_ = any_landmark_ || record.new_landmarks > 0;
+    any_used_ = any_used_ || record.accepted > 0 || record.new_landmarks > 0;
     unused_sightings_ += record.ambiguous + record.gated;
     recorder_.record(record);
     if (request_.parameters.output.mrpt_files) simple_map_.add(record.pose, record.cov, step.frame);
@@ -199,7 +199,12 @@ class Run {
 
   /// A run on odometry alone is legitimate, but rarely what was meant.
   void warn_of_unused_sightings(std::vector<std::string>& warnings) const {
-    if (pipeline_.filter().registry().size() > 0 || any_landmark_) return;
+    if (any_used_) return;
+    if (request_.parameters.frontend.source == "sensor_path") {
+      warnings.push_back(
+          "no displacement was used: input.sensor_label must name the odometry of the sensor");
+      return;
+    }
     warnings.push_back(unused_sightings_ == 0
                            ? "no range-bearing sighting passed the filters: this is odometry alone"
                            : std::to_string(unused_sightings_) +
@@ -228,7 +233,7 @@ class Run {
   std::exception_ptr failure_;
   std::vector<std::string> warnings_;
   std::int64_t unusable_steps_ = 0, unused_sightings_ = 0;
-  bool any_landmark_ = false;
+  bool any_used_ = false;
   int exit_code_ = 0;
   std::string status_ = "done";
 };

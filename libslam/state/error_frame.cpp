@@ -73,15 +73,12 @@ ChartChange RightInvariantFrame::retract(GaussianState& state, BlockId pose,
       add_to_block(block, delta);
       continue;
     }
-    if (role == WorldRole::kPose && id != pose)
-      throw std::invalid_argument("block '" + block.spec.name +
-                                  "': the right-invariant error frame knows one pose only");
     auto& x = block.estimate;
     const Eigen::Vector2d before = x.head<2>();
     const Eigen::Vector2d xi = delta.segment<2>(block.offset) - rotated_90(before) * turn;
     const Eigen::Vector2d after = exponential(before, xi);
     x.head<2>() = after;
-    if (role == WorldRole::kPose) x[2] = wrap_angle(x[2] + turn);
+    if (role == WorldRole::kPose) x[2] = wrap_angle(x[2] + delta[block.offset + 2]);
     moved_.segment<2>(block.offset) = rotated_90(after - before);
   }
   return {heading, {moved_.data(), state.dimension(), 1}};

@@ -47,11 +47,13 @@ class StandardFrame final : public ErrorFrame {
 /// with J the rotation by +90 degrees; blocks without a world role keep the additive error. Along
 /// the unobservable directions (a shift and a turn of the world) xi does not depend on the
 /// estimate, so the filter cannot gain information on them (Barrau & Bonnabel 2015,
-/// arXiv:1510.06263).
+/// arXiv:1510.06263). A delayed pose takes part as a point with a heading of its own, whose error
+/// stays additive: a turn of the world changes it by the same angle everywhere, so the directions
+/// stay constant.
 class RightInvariantFrame final : public ErrorFrame {
  public:
   std::string_view name() const override { return "right_invariant"; }
-  /// Supported: one SE2 pose, planar points, blocks without a world role.
+  /// Supported: SE2 poses, planar points, blocks without a world role.
   void require_supported(const BlockSpec& spec) const override;
   ChartChange retract(GaussianState& state, BlockId pose, const VectorRef& delta) override;
 

@@ -14,6 +14,7 @@
 
 #include <libslam/io/arc_motion.hpp>
 #include <libslam/io/importers/imported_log.hpp>
+#include <libslam/io/truth_writer.hpp>
 #include <libslam/map/csv_text.hpp>
 #include <libslam/result/atomic_file.hpp>
 #include <libslam/result/trajectory.hpp>
@@ -65,7 +66,11 @@ class RawlogWriter {
 
   void write_frame(const ImportedScan& scan) {
     mrpt::obs::CSensoryFrame frame;
-    frame.insert(std::make_shared<CObservationBearingRange>(to_observation(scan)));
+    if (!log_.scans.empty())
+      frame.insert(std::make_shared<CObservationBearingRange>(to_observation(scan)));
+    const bool placed = on_path_ < log_.sensor_path.size();
+    if (placed && log_.sensor_path[on_path_].time == scan.time)
+      frame.insert(to_observation(log_.sensor_path[on_path_++]));
     archive() << frame;
   }
 
@@ -114,7 +119,16 @@ class RawlogWriter {
     return o;
   }
 
+  static mrpt::obs::CObservationOdometry::Ptr to_observation(const ImportedSensorPose& reading) {
+    auto o = mrpt::obs::CObservationOdometry::Create();
+    o->timestamp = mrpt::Clock::fromDouble(reading.time);
+    o->sensorLabel = "scan_matching";
+    o->odometry = to_pose(reading.pose);
+    return o;
+  }
+
   const ImportedLog& log_;
+  std::size_t on_path_ = 0;  // first reading of the sensor path that is not written
   mrpt::io::CFileGZOutputStream out_;
   mrpt::serialization::CArchive::UniquePtr archive_ =
       mrpt::serialization::archiveUniquePtrFrom(out_);
@@ -147,19 +161,6 @@ std::string path_text(const Trajectory& path) {
   std::string text;
   for (std::size_t i = 0; i < path.poses.size(); ++i)
     append_tum_row(text, path.times[i], path.poses[i]);
-  return text;
-}
-
-std::string landmarks_text(const std::vector<TrueLandmark>& landmarks) {
-  std::string text = "id,x,y\n";
-  for (const auto& landmark : landmarks) {
-    append_number(text, landmark.id);
-    for (int i = 0; i < 2; ++i) {
-      text += ',';
-      append_number(text, landmark.position[i]);
-    }
-    text += '\n';
-  }
   return text;
 }
 

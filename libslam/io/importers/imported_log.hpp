@@ -42,10 +42,18 @@ struct ImportedScan {
   std::vector<ImportedSighting> sightings;
 };
 
+/// Where a sensor says it is, on its own path (scan matching, visual odometry).
+struct ImportedSensorPose {
+  double time = 0.0;                               ///< [s]
+  Eigen::Vector3d pose = Eigen::Vector3d::Zero();  ///< x [m], y [m], phi [rad]
+};
+
 struct ImportedLog {
-  std::string scenario;                                      ///< name of the data set and sequence
-  std::vector<ImportedOdometry> odometry;                    ///< times never decrease
-  std::vector<ImportedScan> scans;                           ///< times increase
+  std::string scenario;                    ///< name of the data set and sequence
+  std::vector<ImportedOdometry> odometry;  ///< times never decrease
+  std::vector<ImportedScan> scans;         ///< times increase
+  /// At times of odometry readings (pair logs); written as odometry of the sensor "scan_matching".
+  std::vector<ImportedSensorPose> sensor_path;
   Eigen::Vector3d T_robot_sensor = Eigen::Vector3d::Zero();  ///< x [m], y [m], phi [rad]
   double sigma_range = 0.0;                                  ///< [m], 0 if the source states none
   double sigma_bearing = 0.0;                                ///< [rad], 0 if the source states none

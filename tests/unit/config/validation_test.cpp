@@ -244,8 +244,37 @@ std::string name_of(const testing::TestParamInfo<Case>& info) {
   return info.param.name;
 }
 
+const Case kFilter[] = {
+    {"first_estimate_in_the_standard_frame",
+     [](Parameters& p) {
+       p.filter.error_frame = "standard";
+       p.filter.linearization = "first_estimate";
+     },
+     {}},
+    {"first_estimate_in_the_invariant_frame",
+     [](Parameters& p) { p.filter.linearization = "first_estimate"; },
+     {"filter.linearization", "filter.error_frame"}},
+    {"at_truth_of_a_log",
+     [](Parameters& p) {
+       p.filter.error_frame = "standard";
+       p.filter.linearization = "at_truth";
+     },
+     {"filter.linearization"}},
+};
+
 INSTANTIATE_TEST_SUITE_P(Calibration, ValidationOf, testing::ValuesIn(kCalibration), name_of);
 INSTANTIATE_TEST_SUITE_P(Others, ValidationOf, testing::ValuesIn(kOthers), name_of);
+INSTANTIATE_TEST_SUITE_P(Filter, ValidationOf, testing::ValuesIn(kFilter), name_of);
+
+TEST(Validation, OnlySimulationsKnowTheTruthAndOnlyByIdentity) {
+  Parameters p;
+  p.filter.error_frame = "standard";
+  p.filter.linearization = "at_truth";
+  EXPECT_TRUE(find_conflicts(p, TruthAccess::kSimulation).empty());
+  p.association.method = "nearest_neighbour";
+  EXPECT_EQ(find_conflicts(p, TruthAccess::kSimulation).front().keys,
+            (std::vector<std::string>{"filter.linearization", "association.method"}));
+}
 
 TEST(Validation, PointsToTheLineThatSetTheParameter) {
   ParameterPlaces places;

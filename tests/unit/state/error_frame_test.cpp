@@ -105,6 +105,31 @@ TEST(ErrorFrame, ChangeOfChartKeepsTheCovarianceOfTheInvariantError) {
             1e-11 * p_xi.norm() * after.squaredNorm());
 }
 
+// A turn of the world is one direction of the invariant error, whatever the estimates: a delayed
+// pose moves along with the robot and keeps its own heading error.
+TEST(ErrorFrame, RightInvariantDelayedPoseTurnsWithTheWorld) {
+  std::mt19937_64 random(35);
+  World world = make_world(random);
+  const BlockId delayed = world.state.add({"before", Chart::kSE2, 3, WorldRole::kPose},
+                                          Eigen::Vector3d(2.0, -1.0, 3.0), Eigen::Matrix3d::Zero());
+  constexpr double kTurn = 0.4;
+  Eigen::VectorXd delta = Eigen::VectorXd::Zero(kDimension + 3);
+  for (const BlockId block : world.state.blocks()) {
+    if (world.state.spec(block).role == WorldRole::kNone) continue;
+    delta.segment<2>(world.state.offset(block)) =
+        kTurn * quarter_turn() * world.state.estimate(block).head<2>();
+    if (world.state.spec(block).role == WorldRole::kPose)
+      delta[world.state.offset(block) + 2] = kTurn;
+  }
+  const Eigen::Vector2d turned =
+      Eigen::Rotation2Dd(kTurn) * Eigen::Vector2d(world.state.estimate(delayed).head<2>());
+  RightInvariantFrame frame;
+  static_cast<void>(frame.retract(world.state, world.pose, delta));
+  const Eigen::Vector3d moved = world.state.estimate(delayed);
+  EXPECT_LT((moved.head<2>() - turned).norm(), 1e-12);
+  EXPECT_NEAR(moved[2], wrap_angle(3.0 + kTurn), 1e-12);
+}
+
 TEST(ErrorFrame, StandardAddsAndKeepsTheCovariance) {
   std::mt19937_64 random(33);
   World world = make_world(random);

@@ -21,5 +21,5 @@ install(FILES
   ${PROJECT_BINARY_DIR}/libslam-config-version.cmake
   DESTINATION ${package_folder} COMPONENT development)
 
-install(DIRECTORY config DESTINATION ${CMAKE_INSTALL_DATADIR}/libslam)
+install(DIRECTORY config datasets DESTINATION ${CMAKE_INSTALL_DATADIR}/libslam)
 install(FILES package.xml DESTINATION ${CMAKE_INSTALL_DATADIR}/libslam)

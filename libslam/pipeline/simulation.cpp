@@ -1,0 +1,89 @@
+#include <utility>
+
+#include <libslam/config/yaml_loader.hpp>
+#include <libslam/io/input_error.hpp>
+#include <libslam/io/text_reader.hpp>
+#include <libslam/io/truth_reader.hpp>
+#include <libslam/pipeline/factory.hpp>
+#include <libslam/pipeline/simulation.hpp>
+#include <libslam/simulation/planar_pose.hpp>
+
+namespace libslam {
+
+namespace {
+
+std::vector<Wall> read_walls(const std::string& file) {
+  TextReader row(file);
+  std::vector<Wall> walls;
+  bool first = true;
+  while (row.next()) {
+    if (std::exchange(first, false) && row.word(0) == "x1") continue;
+    if (row.columns() != 4) row.reject("a wall has the columns x1,y1,x2,y2");
+    walls.push_back({{row.number(0), row.number(1)}, {row.number(2), row.number(3)}});
+  }
+  return walls;
+}
+
+/// Identities travel through logs as 32-bit numbers, and -1 means none.
+std::vector<TrueLandmark> read_landmarks(const std::string& file) {
+  std::vector<TrueLandmark> landmarks = read_true_landmarks(file);
+  for (const TrueLandmark& landmark : landmarks)
+    if (landmark.id < 0 || landmark.id > INT32_MAX)
+      throw InputError(file + ": landmark id " + std::to_string(landmark.id) +
+                       " is none of 0 to 2147483647");
+  return landmarks;
+}
+
+World read_world(const WorldParameters& files, const DriveParameters& drive) {
+  World world;
+  world.landmarks = read_landmarks(files.landmarks_file);
+  for (const TrueLandmark& point : read_true_landmarks(files.way_points_file))
+    world.way_points.emplace_back(point.position.head<2>());
+  if (!files.walls_file.empty()) world.walls = read_walls(files.walls_file);
+  world.T_world_start = {drive.start_x, drive.start_y, to_radians(drive.start_heading_deg)};
+  return world;
+}
+
+InputParameters driven_by(const std::string& odometry) {
+  InputParameters input;
+  input.odometry = odometry;
+  return input;
+}
+
+SimulatedVehicle make_vehicle(const Scenario& scenario) {
+  MotionParameters motion = scenario.motion;
+  motion.noise.from_log = false;  // the log's noise is made here
+  const InputParameters logged = driven_by(scenario.log.odometry);
+  SimulatedVehicle vehicle;
+  vehicle.commanded = make_motion_model(motion, {}, driven_by("velocities"));
+  vehicle.logged = make_motion_model(motion, {}, logged);
+  vehicle.actual = make_motion_model(motion, calibration_of(scenario.truth), logged);
+  return vehicle;
+}
+
+}  // namespace
+
+Scenario load_scenario(const std::filesystem::path& file, ParameterPlaces* places) {
+  Scenario scenario;
+  load_yaml(ParameterTable(scenario), file, places);
+  resolve_world_files(scenario, file.parent_path());
+  return scenario;
+}
+
+void resolve_world_files(Scenario& scenario, const std::filesystem::path& directory) {
+  WorldParameters& world = scenario.world;
+  for (std::string* name : {&world.landmarks_file, &world.way_points_file, &world.walls_file})
+    if (!name->empty()) *name = (directory / *name).string();
+}
+
+World make_world(const Scenario& scenario) {
+  if (scenario.world.generator == "random") return make_random_world(scenario.world);
+  if (scenario.world.generator == "rooms") return make_rooms(scenario.world);
+  return read_world(scenario.world, scenario.drive);
+}
+
+std::unique_ptr<Simulator> make_simulator(const Scenario& scenario, std::uint64_t seed) {
+  return std::make_unique<Simulator>(scenario, make_world(scenario), make_vehicle(scenario), seed);
+}
+
+}  // namespace libslam

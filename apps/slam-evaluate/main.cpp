@@ -13,6 +13,7 @@
 #include <libslam/io/truth_reader.hpp>
 #include <libslam/result/recorded_run.hpp>
 
+#include "batch.hpp"
 #include "table.hpp"
 
 namespace {
@@ -26,7 +27,8 @@ enum ExitCode { kDone = 0, kCommandLine = 2, kInput = 4, kIncomplete = 5 };
 struct Arguments {
   std::vector<std::string> runs;
   std::string truth, truth_map;
-  bool json = false, csv = false, quiet = false, verbose = false;
+  bool batch = false, json = false, csv = false, quiet = false, verbose = false;
+  int on_line_steps = 0;
 };
 
 /// "a/b/" and "a/b" both give "b".
@@ -71,13 +73,14 @@ EvaluatedRun evaluate_run(const fs::path& directory, const Arguments& arguments,
   return run;
 }
 
-int run(const Arguments& arguments) {
-  std::vector<EvaluatedRun> runs;
+/// Calls `evaluate` on every run; returns whether all went well. What did not is said.
+template <typename Evaluate>
+bool for_each_run(const Arguments& arguments, Evaluate&& evaluate) {
   bool complete = true;
   for (const std::string& directory : arguments.runs) {
     std::string warning;
     try {
-      runs.push_back(evaluate_run(directory, arguments, warning));
+      evaluate(fs::path(directory), warning);
     } catch (const std::exception& error) {
       warning = error.what();
     }
@@ -85,6 +88,30 @@ int run(const Arguments& arguments) {
     complete = false;
     std::cerr << "slam-evaluate: " << warning << '\n';
   }
+  return complete;
+}
+
+int run_batch(const Arguments& arguments) {
+  std::vector<evaluate::BatchEvaluation> runs;
+  const bool complete = for_each_run(arguments, [&](const fs::path& directory, std::string&) {
+    const RunSummary summary = read_run_summary(directory / "run.json");
+    const GroundTruth truth = read_truth(truth_files_for(summary, arguments));
+    runs.push_back(evaluate::evaluate_batch(directory, name_of(directory), summary, truth,
+                                            arguments.on_line_steps));
+    if (!arguments.json && !arguments.quiet)
+      std::cout << evaluate::to_text(runs.back(), arguments.verbose) << std::flush;
+  });
+  if (runs.empty()) return kInput;
+  if (arguments.json) std::cout << evaluate::to_json(runs);
+  return complete ? kDone : kIncomplete;
+}
+
+int run(const Arguments& arguments) {
+  std::vector<EvaluatedRun> runs;
+  const bool complete =
+      for_each_run(arguments, [&](const fs::path& directory, std::string& warning) {
+        runs.push_back(evaluate_run(directory, arguments, warning));
+      });
   if (runs.empty()) return kInput;
   if (arguments.json)
     std::cout << evaluate::to_json(runs);
@@ -107,14 +134,26 @@ int main(int argc, char** argv) {
   app.add_option("--truth-map", arguments.truth_map,
                  "True landmarks (id,x,y[,z], or the text form of MRPT)");
   auto* json = app.add_flag("--json", arguments.json, "Print JSON with the keys of run.json");
-  app.add_flag("--csv", arguments.csv, "Print CSV, one line per run")->excludes(json);
+  auto* csv = app.add_flag("--csv", arguments.csv, "Print CSV, one line per run")->excludes(json);
+  auto* batch =
+      app.add_flag(
+             "--batch", arguments.batch,
+             "Solve each run again as one least-squares problem over its log, print the filter "
+             "beside this optimum, and write batch.json into the run")
+          ->excludes(csv);
+  app.add_option("--on-line", arguments.on_line_steps,
+                 "With --batch: also solve the log up to each of so many steps, which is what the "
+                 "path of a filter can be held against")
+      ->needs(batch)
+      ->check(CLI::Range(1, 100000));
   auto* quiet = app.add_flag("-q,--quiet", arguments.quiet,
                              "Print no table; errors and the exit code remain");
   app.add_flag("-v,--verbose", arguments.verbose, "Print all figures")->excludes(quiet);
   app.set_version_flag("--version", "slam-evaluate " + std::string(version()) + " (" +
                                         std::string(git_revision()) + ")");
   app.footer(
-      "Example: slam-evaluate run1 run2 --truth robot.truth.tum\n"
+      "Examples: slam-evaluate run1 run2 --truth robot.truth.tum\n"
+      "          slam-evaluate --batch run1\n"
       "Exit codes: 0 done, 2 wrong command line, 4 no run could be read, 5 some figures are "
       "missing.");
   try {
@@ -123,7 +162,7 @@ int main(int argc, char** argv) {
     return app.exit(error) == 0 ? kDone : kCommandLine;
   }
   try {
-    return run(arguments);
+    return arguments.batch ? run_batch(arguments) : run(arguments);
   } catch (const std::exception& error) {
     std::cerr << "slam-evaluate: " << error.what() << '\n';
     return kInput;

@@ -126,6 +126,10 @@ std::optional<RelativeErrors> compare_relative(std::span<const EstimatedPose> es
   return errors;
 }
 
+// Smallest pivot of a correlation matrix that is more than the rounding of its entries, with a
+// margin: the first motion from a known pose has a covariance of rank two.
+constexpr double kSingular = 1e-12;
+
 std::vector<double> pose_nees(std::span<const EstimatedPose> estimate, const Trajectory& truth,
                               std::span<const PoseMatch> matches) {
   if (!truth.has_heading) throw std::invalid_argument("pose NEES needs a true heading");
@@ -138,9 +142,14 @@ std::vector<double> pose_nees(std::span<const EstimatedPose> estimate, const Tra
     Eigen::Vector3d e =
         estimate[m.estimate].pose - transform_pose(T_filter_truth, truth.poses[m.truth]);
     e.z() = wrapToPi(e.z());
-    const Eigen::LLT<Eigen::Matrix3d> cholesky(estimate[m.estimate].cov);
-    values.push_back(cholesky.info() == Eigen::Success ? e.dot(cholesky.solve(e))
-                                                       : std::numeric_limits<double>::quiet_NaN());
+    // Scaled by its standard deviations, so that a direction without variance shows in any unit.
+    const Eigen::Matrix3d& cov = estimate[m.estimate].cov;
+    const Eigen::Vector3d scale = cov.diagonal().cwiseSqrt().cwiseInverse();
+    const Eigen::LDLT<Eigen::Matrix3d> factors(scale.asDiagonal() * cov * scale.asDiagonal());
+    const bool regular = scale.allFinite() && factors.vectorD().minCoeff() > kSingular;
+    const Eigen::Vector3d scaled = scale.cwiseProduct(e);
+    values.push_back(regular ? scaled.dot(factors.solve(scaled))
+                             : std::numeric_limits<double>::quiet_NaN());
   }
   return values;
 }
@@ -150,6 +159,7 @@ std::optional<NeesSummary> summarize_nees(std::span<const EstimatedPose> estimat
                                           std::span<const double> values) {
   if (matches.empty()) return std::nullopt;
   const double lower = chi_square_quantile(0.025, 3), upper = chi_square_quantile(0.975, 3);
+  const double ellipsoid = chi_square_quantile(0.95, 3);
   const RunAxis axis(estimate);
   const double begin = axis.at(estimate[matches.front().estimate]);
   const double span = axis.at(estimate[matches.back().estimate]) - begin;
@@ -165,10 +175,12 @@ std::optional<NeesSummary> summarize_nees(std::span<const EstimatedPose> estimat
     ++counts[quarter];
     finite.push_back(values[i]);
     summary.in_95 += values[i] >= lower && values[i] <= upper;
+    summary.coverage_95 += values[i] <= ellipsoid;
   }
   if (finite.empty()) return std::nullopt;
   summary.steps = static_cast<int>(finite.size());
   summary.in_95 /= summary.steps;
+  summary.coverage_95 /= summary.steps;
   summary.mean = (sums[0] + sums[1] + sums[2] + sums[3]) / summary.steps;
   summary.median = median(std::move(finite));
   for (std::size_t q = 0; q < 4; ++q)

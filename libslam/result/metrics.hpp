@@ -51,11 +51,12 @@ struct RelativeErrors {
 /// Normalized estimation error squared of the pose, 3 degrees of freedom: ideal mean 3. The error
 /// is taken in the filter's own coordinates, to which the raw placement carries the truth.
 struct NeesSummary {
-  int steps = 0;  ///< matched steps with a positive definite covariance
+  int steps = 0;  ///< matched steps with a regular covariance
   double mean = 0, median = 0;
   double in_95 = 0;  ///< fraction between the 2.5 % and the 97.5 % quantile
   std::array<std::optional<double>, 4>
-      quarter_mean;  ///< by quarter of the matched part of the run (RunAxis)
+      quarter_mean;        ///< by quarter of the matched part of the run (RunAxis)
+  double coverage_95 = 0;  ///< fraction whose 95 % ellipsoid holds the truth, ideal .95
 };
 
 /// Position errors of point landmarks [m]; raw under the placement of the path, aligned by their
@@ -91,8 +92,8 @@ std::optional<RelativeErrors> compare_relative(std::span<const EstimatedPose> es
                                                std::span<const PoseMatch> matches,
                                                double distance_m = 0.0);
 
-/// NEES of every match; NaN where the covariance is not positive definite (a known start pose).
-/// Needs a true heading; throws std::invalid_argument without.
+/// NEES of every match; NaN where the covariance is singular (a known start pose, its first
+/// motion). Needs a true heading; throws std::invalid_argument without.
 std::vector<double> pose_nees(std::span<const EstimatedPose> estimate, const Trajectory& truth,
                               std::span<const PoseMatch> matches);
 

@@ -32,6 +32,7 @@ void write_nees(Json& out, const NeesSummary& nees) {
   out["nees_mean"] = nees.mean;
   out["nees_median"] = nees.median;
   out["nees_in_95"] = nees.in_95;
+  out["nees_coverage_95"] = nees.coverage_95;
   Json quarters = Json::array();
   for (const auto& mean : nees.quarter_mean) quarters.push_back(mean ? Json(*mean) : Json());
   out["nees_quarters"] = quarters;
@@ -80,6 +81,7 @@ NeesSummary read_nees(const Json& in) {
   nees.mean = number(in, "nees_mean");
   nees.median = number(in, "nees_median");
   nees.in_95 = number(in, "nees_in_95");
+  nees.coverage_95 = number(in, "nees_coverage_95");
   if (const auto quarters = in.find("nees_quarters"); quarters != in.end())
     for (std::size_t q = 0; q < 4; ++q)
       if (const Json& mean = quarters->at(q); !mean.is_null())

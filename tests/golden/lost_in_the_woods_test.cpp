@@ -1,6 +1,6 @@
 // UTIAS Lost in the Woods: real robot, 17 tubes, 341 m, identities removed.
 
-#include <tests/golden/log_run.hpp>
+#include <tests/golden/batch_run.hpp>
 
 #include <libslam/io/importers/lost_in_the_woods.hpp>
 
@@ -77,4 +77,31 @@ TEST(LostInTheWoods, AFalsifiedLogIsSeenThrough) {
   EXPECT_LE(calibrated.summary.truth->path->raw->rmse_m, 0.10);
   EXPECT_EQ(calibrated.map.size(), 17u);
   EXPECT_GT(uncalibrated.summary.truth->path->raw->rmse_m, 1.0);
+}
+
+// The map against the truth beside the optimum's. The path of a filter is what it knew at the time:
+// its measure is the optimum over the log up to each moment, not the smoothed path.
+TEST(LostInTheWoods, MapAndPathAreWithinTenPercentOfTheBatchOptimum) {
+  LIBSLAM_REQUIRE_DATA(directory, kData);
+  const TemporaryDirectory scratch;
+  const BatchRun run = batch_imported(kConfig, log_without_identities(directory), scratch, {}, 30);
+  EXPECT_TRUE(run.batch.converged);
+  const MapErrors& filter = *run.comparison.filter.truth->map;
+  const MapErrors& batch = *run.comparison.batch.truth->map;
+  EXPECT_EQ(filter.matched, 17);
+  EXPECT_LE(*filter.rmse_aligned_m, 1.1 * *batch.rmse_aligned_m);
+  EXPECT_LE(*filter.rmse_m, 1.1 * *batch.rmse_m);
+  const OnLineComparison& on_line = *run.comparison.on_line;
+  EXPECT_LE(on_line.filter->raw->rmse_m, 1.1 * on_line.batch->raw->rmse_m);
+  EXPECT_LE(on_line.distance_rmse_m, 0.005);
+  // One sigma of the calibration is 0.0057.
+  for (std::size_t i = 0; i < 2; ++i) {
+    const CalibrationValue& best = run.comparison.batch.calibration[i];
+    EXPECT_LE(std::abs(run.comparison.filter.calibration[i].mean - best.mean), 0.25 * best.sigma);
+    EXPECT_NEAR(run.comparison.filter.calibration[i].sigma / best.sigma, 1.0, 0.05);
+  }
+  std::cout << "filter and batch, RMSE [m]: map aligned " << *filter.rmse_aligned_m << " "
+            << *batch.rmse_aligned_m << ", raw " << *filter.rmse_m << " " << *batch.rmse_m
+            << "; path on line " << on_line.filter->raw->rmse_m << " " << on_line.batch->raw->rmse_m
+            << "; smoothed path " << run.comparison.batch.truth->path->raw->rmse_m << "\n";
 }

@@ -31,7 +31,7 @@ RunSummary full_summary() {
   s.truth->path = {50, PathErrors::Position{1, 2, 3, 4, 5},
                    PathErrors::Position{.1, .2, .3, .4, .5}, PathErrors::Heading{.01, .02}};
   s.truth->relative = {10, 40, 1.5, 0.02};
-  s.truth->nees = {49, 3.1, 2.4, .94, {3.0, std::nullopt, 3.2, 3.1}};
+  s.truth->nees = {49, 3.1, 2.4, .94, {3.0, std::nullopt, 3.2, 3.1}, .96};
   s.truth->map = {15, 2, 1, .05, .02};
   s.truth->calibration_error = {{"scale_left", 0.001}};
   return s;
@@ -91,6 +91,7 @@ TEST(RunSummary, KeysAreThoseOfTheContract) {
                               "/truth/rpe_trans_percent",
                               "/truth/nees_mean",
                               "/truth/nees_in_95",
+                              "/truth/nees_coverage_95",
                               "/truth/map_rmse_m",
                               "/truth/map_rmse_aligned_m",
                               "/truth/calibration_error/scale_left"})

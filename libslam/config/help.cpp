@@ -81,10 +81,12 @@ std::string help_text(const ParameterTable& table) {
 std::string help_tables(const ParameterTable& table, int level) {
   std::string page, section;
   for (const ParameterEntry& entry : list_parameters(table)) {
-    if (entry.section() != section) {
+    if (page.empty() || entry.section() != section) {
       section = entry.section();
-      page.append("\n").append(static_cast<std::size_t>(level), '#').append(" `").append(section);
-      page += "`\n\n| key | default | value | meaning |\n|---|---|---|---|\n";
+      page += "\n";
+      if (!section.empty())
+        page.append(static_cast<std::size_t>(level), '#').append(" `").append(section) += "`\n\n";
+      page += "| key | default | value | meaning |\n|---|---|---|---|\n";
     }
     page += "| `" + std::string(entry.key()) + "` | `" + shown_value(entry) + "` | " +
             escape_cell(describe_domain(entry)) + " | " + escape_cell(entry.description.text) +

@@ -7,6 +7,7 @@
 
 #include <libslam/data/ground_truth.hpp>
 #include <libslam/map/landmark_map.hpp>
+#include <libslam/result/report_page.hpp>
 #include <libslam/result/run_summary.hpp>
 #include <libslam/result/series_envelope.hpp>
 #include <libslam/result/trajectory.hpp>
@@ -23,13 +24,7 @@ struct ReportInput {
   const SeriesEnvelope& step_times;      ///< [ms] over the number of the step
 };
 
-/// Folder that holds d3/d3.min.js or d3.min.js: $LIBSLAM_JS_DIR, else the one found at
-/// configuration.
-std::filesystem::path plotting_library_folder();
-
-/// The page as HTML. The plotting library is read from `library_folder` and inlined; where it is
-/// missing, the page carries still drawings and says what to install. Nothing on the page loads
-/// from a network. Throws like TrajectoryReader.
+/// The page as HTML, see assemble_page. Throws like TrajectoryReader.
 std::string make_report(const ReportInput& input,
                         const std::filesystem::path& library_folder = plotting_library_folder());
 

@@ -1,9 +1,8 @@
 #pragma once
-// The still parts of the report: key figures, warnings, and drawings for a page without plotting
+// The still parts of the report: key figures, and drawings for a page without plotting
 // library.
 
 #include <string>
-#include <string_view>
 
 #include <nlohmann/json.hpp>
 
@@ -11,16 +10,15 @@
 
 namespace libslam {
 
-/// `text` with the five characters that HTML gives a meaning replaced.
-std::string escape_html(std::string_view text);
-
 /// Cards with the key figures of run.json, as HTML.
 std::string key_figures_html(const RunSummary& summary);
 
-/// The warnings as a list; empty without any.
-std::string warnings_html(const RunSummary& summary);
-
 /// Still SVG drawings of what make_report_data returns.
 std::string still_drawings_html(const nlohmann::ordered_json& data);
+
+/// One of its panels over `t`, with the name and unit of the abscissa in `axis`; empty without
+/// values.
+std::string still_panel_svg(const nlohmann::ordered_json& axis, const nlohmann::ordered_json& t,
+                            const nlohmann::ordered_json& panel);
 
 }  // namespace libslam

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include <libslam/result/report_figures.hpp>
+#include <libslam/result/report_html.hpp>
 
 namespace libslam {
 namespace {
@@ -95,7 +96,9 @@ std::string map_drawing(const Json& map) {
   return svg + "</svg>";
 }
 
-std::string panel_drawing(const Json& axis, const Json& t, const Json& panel) {
+}  // namespace
+
+std::string still_panel_svg(const Json& axis, const Json& t, const Json& panel) {
   constexpr double kHeight = 170.0, kLeft = 70.0;
   Interval x, y;
   x.add_all(t);
@@ -126,15 +129,14 @@ std::string panel_drawing(const Json& axis, const Json& t, const Json& panel) {
   return svg + "</svg>";
 }
 
-}  // namespace
-
 std::string still_drawings_html(const Json& data) {
   std::string html =
       "<section class=\"plot\"><h2>Path and map</h2>" + map_drawing(data["map"]) + "</section>\n";
   for (const Json& plot : data["plots"]) {
     html += "<section class=\"plot\"><h2>" + escape_html(plot["title"].get<std::string>()) +
             "</h2><p class=\"good\">" + escape_html(plot["good"].get<std::string>()) + "</p>";
-    for (const Json& panel : plot["panels"]) html += panel_drawing(data["axis"], plot["t"], panel);
+    for (const Json& panel : plot["panels"])
+      html += still_panel_svg(data["axis"], plot["t"], panel);
     html += "</section>\n";
   }
   return html;

@@ -1,32 +1,11 @@
 // Draws the numbers of #data into #plots: a map with equal axes, then time series that zoom together.
 (function () {
   "use strict";
-  var data = JSON.parse(document.getElementById("data").textContent);
-  var main = d3.select("#plots");
-  var readout = d3.select("body").append("div").attr("class", "readout");
+  var data = reportParts.data, main = reportParts.main;
+  var showReadout = reportParts.showReadout, hideReadout = reportParts.hideReadout;
+  var number = reportParts.number, isValue = reportParts.isValue, legend = reportParts.legend;
+  var valueExtent = reportParts.valueExtent, decades = reportParts.decades;
   var WIDTH = 1200;
-
-  function showReadout(text) {
-    var event = d3.event;
-    var left = Math.min(event.clientX + 14, window.innerWidth - 260);
-    readout.style({ display: "block", left: left + "px", top: event.clientY + 16 + "px" }).text(text);
-  }
-  function hideReadout() { readout.style("display", "none"); }
-  function number(value) { return value === null || value === undefined ? "\u2013" : d3.format(".5g")(value); }
-  function isValue(value) { return value !== null; }
-
-  function section(title, sentence) {
-    var plot = main.append("section").attr("class", "plot");
-    plot.append("h2").text(title);
-    plot.append("p").attr("class", "good").text(sentence);
-    return plot;
-  }
-  function legend(plot, entries) {
-    var keys = plot.append("div").attr("class", "legend").selectAll("span").data(entries).enter().append("span");
-    keys.text(function (e) { return e.text; })
-      .attr("class", function (e) { return e.shape || ""; });
-    keys.each(function (e) { this.style.setProperty("--key", "var(--" + e.colour + ")"); });
-  }
 
   // ---- map ----------------------------------------------------------------------------------------------
 
@@ -50,7 +29,7 @@
     var extent = mapExtent(map);
     if (extent.x[0] === undefined) return;
     var hasTruth = map.truth.x.length > 0, hasTrueMap = map.true_landmarks.length > 0;
-    var plot = section("Path and map", hasTruth || hasTrueMap
+    var plot = reportParts.section(main, "Path and map", hasTruth || hasTrueMap
       ? "The estimated path should lie on the true one, and nearly every true landmark (cross) inside its 95 % ellipse."
       : "Ellipses hold the true place with 95 % probability; they should shrink when the robot comes back to known ground.");
     var entries = [{ text: "estimated path and landmarks, 95 % ellipses", colour: "estimate" }];
@@ -145,33 +124,6 @@
     redrawers.forEach(function (redraw) { redraw(extent); });
   }
 
-  function valueExtent(panel, inside) {
-    var values = [];
-    function take(series) { series.forEach(function (v, i) { if (isValue(v) && inside(i)) values.push(v); }); }
-    take(panel.low);
-    take(panel.high);
-    var own = d3.extent(values);
-    if (panel.level) values.push(panel.level.value);
-    if (panel.interval) values.push(panel.interval.low, panel.interval.high);
-    if (panel.band) {
-      // A band that starts wide must not flatten the curve: it may at most triple the range of the values.
-      var reach = panel.log ? Infinity : 1.5 * Math.max(own[1] - own[0], 1e-9 * Math.abs(own[1]), 1e-12);
-      panel.band.low.concat(panel.band.high).forEach(function (v, i) {
-        if (isValue(v) && inside(i % panel.band.low.length))
-          values.push(Math.max(own[0] - reach, Math.min(own[1] + reach, v)));
-      });
-    }
-    if (panel.log) values = values.filter(function (v) { return v > 0; });
-    if (!values.length) return [0.1, 1];
-    var extent = d3.extent(values);
-    if (panel.log) {
-      // Single steps at almost zero say nothing: four decades are enough.
-      return [Math.max(extent[0], extent[1] * 1e-4) / 1.2, extent[1] * 1.2];
-    }
-    var pad = 0.06 * (extent[1] - extent[0]) || Math.abs(extent[0]) * 0.01 || 1;
-    return [extent[0] - pad, extent[1] + pad];
-  }
-
   function drawPanel(plot, t, panel, isLast, clipId) {
     var margin = { left: 76, right: 14, top: 10, bottom: isLast ? 40 : 12 };
     var width = WIDTH - margin.left - margin.right, height = 150;
@@ -242,20 +194,8 @@
       .on("mouseout.readout", function () { cursor.style("display", "none"); hideReadout(); });
   }
 
-  /// Powers of ten inside a domain; with few of them also twice and five times.
-  function decades(domain) {
-    var ticks = [], first = Math.floor(Math.log(domain[0]) / Math.LN10), last = Math.ceil(Math.log(domain[1]) / Math.LN10);
-    var factors = last - first > 3 ? [1] : [1, 2, 5];
-    for (var p = first; p <= last; ++p)
-      factors.forEach(function (f) {
-        var v = f * Math.pow(10, p);
-        if (v >= domain[0] && v <= domain[1]) ticks.push(v);
-      });
-    return ticks;
-  }
-
   function drawPlot(plotData, index) {
-    var plot = section(plotData.title, plotData.good);
+    var plot = reportParts.section(main, plotData.title, plotData.good);
     var first = plotData.panels[0];
     var entries = [{ text: plotData.value, colour: "estimate" }];
     if (first.mean) entries.push({ text: "moving mean", colour: "mean" });

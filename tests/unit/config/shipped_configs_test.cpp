@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <libslam/campaign/campaign_plan.hpp>
 #include <libslam/config/validation.hpp>
 #include <libslam/config/yaml_loader.hpp>
+#include <libslam/pipeline/simulation.hpp>
 
 namespace libslam {
 namespace {
@@ -17,6 +19,15 @@ TEST(ShippedConfigurations, LoadAndAreSound) {
     }
     SCOPED_TRACE(file.path().string());
     ParameterPlaces places;
+    const std::string name = file.path().filename();
+    if (name.starts_with("sim_")) {
+      EXPECT_NO_THROW(validate(load_scenario(file.path(), &places), places));
+      continue;
+    }
+    if (name.starts_with("mc_")) {
+      EXPECT_NO_THROW(load_campaign(file.path()));
+      continue;
+    }
     EXPECT_NO_THROW(validate(load_yaml(file.path(), &places), places));
     EXPECT_FALSE(places.empty()) << "sets nothing";
     ++files;

@@ -19,22 +19,29 @@ std::string describe_duration(double seconds) {
   return text.data();
 }
 
-Progress::Progress(bool quiet) : shown_(!quiet && isatty(STDERR_FILENO) != 0) {}
+Progress::Progress(bool quiet) : quiet_(quiet), terminal_(isatty(STDERR_FILENO) != 0) {}
 
 Progress::~Progress() {
-  if (drawn_) std::fputs("\r\033[K", stderr);
+  if (counting_ && terminal_) std::fputs("\r\033[K", stderr);
 }
 
 void Progress::show(std::size_t done, std::size_t total) {
-  if (!shown_) return;
-  if (!drawn_) earlier_ = done - 1;  // what a journal held took no time
-  drawn_ = true;
-  const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - start_;
+  if (quiet_) return;
+  if (!counting_) earlier_ = done - 1;  // what a journal held took no time
+  counting_ = true;
+  const Clock::time_point now = Clock::now();
+  const std::chrono::duration<double> passed = now - start_;
   const double left =
       passed.count() / static_cast<double>(done - earlier_) * static_cast<double>(total - done);
-  const std::string bar(40 * done / total, '#');
-  std::fprintf(stderr, "\r[%-40s] %zu of %zu logs, %s left \033[K", bar.c_str(), done, total,
-               describe_duration(left).c_str());
+  const std::string text = std::to_string(done) + " of " + std::to_string(total) + " logs, " +
+                           describe_duration(left) + " left";
+  if (terminal_) {
+    const std::string bar(40 * done / total, '#');
+    std::fprintf(stderr, "\r[%-40s] %s \033[K", bar.c_str(), text.c_str());
+  } else if (now - last_line_ >= std::chrono::minutes(1)) {
+    last_line_ = now;
+    std::fprintf(stderr, "%s\n", text.c_str());
+  }
 }
 
 }  // namespace libslam

@@ -1,5 +1,5 @@
 #pragma once
-// A bar with the remaining time, on terminals alone.
+// A bar with the remaining time on terminals, elsewhere a line per minute.
 
 #include <chrono>
 #include <cstddef>
@@ -18,8 +18,10 @@ class Progress {
   void show(std::size_t done, std::size_t total);
 
  private:
-  bool shown_, drawn_ = false;
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  using Clock = std::chrono::steady_clock;
+
+  bool quiet_, terminal_, counting_ = false;
+  Clock::time_point start_ = Clock::now(), last_line_ = start_;
   std::size_t earlier_ = 0;
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
+#include <fstream>
 #include <iostream>
 #include <stdexcept>
 #include <thread>
@@ -55,7 +56,7 @@ void prepare_directory(const fs::path& directory, const Arguments& arguments) {
     throw std::runtime_error(directory.string() + ": cannot be made a directory" +
                              (failure ? ": " + failure.message() : ""));
   const bool campaign = fs::exists(directory / kJournal);
-  if (arguments.force || fs::is_empty(directory) || (arguments.resume && campaign)) return;
+  if (fs::is_empty(directory) || (campaign && (arguments.resume || arguments.force))) return;
   throw std::runtime_error(directory.string() + ": is not empty" +
                            (campaign ? "; --resume goes on with it, --force starts over"
                                      : " and holds no campaign; choose another directory"));
@@ -114,6 +115,16 @@ struct Session {
   int workers;
 };
 
+/// Seconds that earlier sessions have worked, as far as they came to write it down.
+double earlier_seconds(const fs::path& directory) {
+  std::ifstream in(directory / "campaign.json");
+  const Json earlier = Json::parse(in, nullptr, false);
+  const auto wall = Json::json_pointer("/timing/wall_s");
+  return earlier.is_object() && earlier.contains(wall) && earlier[wall].is_number()
+             ? earlier[wall].get<double>()
+             : 0.0;
+}
+
 /// Files and figures at the end, complete or not.
 ExitCode conclude(const Session& session, const TaskBoard& board, double wall_s) {
   const Json summary = campaign_to_json(session.plan, board.outcomes(),
@@ -123,20 +134,24 @@ ExitCode conclude(const Session& session, const TaskBoard& board, double wall_s)
   if (session.arguments.report)
     replace_file(session.directory / "report.html",
                  make_campaign_report(summary, report_title(session.directory)));
-  std::string log = campaign_table(summary);
+  std::string trouble;
   const Failures failures = find_failures(summary);
   if (failures.count > 0)
-    log += "warning: " + std::to_string(failures.count) +
-           " runs failed twice; all stand in campaign.json under runs, the first is: " +
-           failures.first + "\n";
+    trouble += "warning: " + std::to_string(failures.count) +
+               " runs failed twice; all stand in campaign.json under runs, the first is: " +
+               failures.first + "\n";
   const bool complete = board.finished();
   if (!complete)
-    log += "interrupted: " + std::to_string(board.done()) + " of " +
-           std::to_string(session.plan.tasks()) +
-           " logs done; the same call with --resume goes on\n";
-  log += "results: " + session.directory.string() + "\n";
+    trouble += "interrupted: " + std::to_string(board.done()) + " of " +
+               std::to_string(session.plan.tasks()) +
+               " logs done; the same call with --resume goes on\n";
+  const std::string log =
+      campaign_table(summary) + trouble + "results: " + session.directory.string() + "\n";
   replace_file(session.directory / "log.txt", log);
-  if (!session.arguments.quiet) std::cout << log;
+  if (session.arguments.quiet)
+    std::cerr << trouble;
+  else
+    std::cout << log;
   return !complete ? kInterrupted : failures.count > 0 ? kPartly : kDone;
 }
 
@@ -168,6 +183,7 @@ ExitCode run_campaign(const Arguments& arguments, const Cluster* cluster,
   prepare_directory(session.directory, arguments);
   Journal journal(session.directory / kJournal, identity,
                   arguments.force ? Journal::Opening::kReplace : Journal::Opening::kContinue);
+  const double earlier = arguments.resume ? earlier_seconds(session.directory) : 0.0;
   // Results of an earlier campaign must not stand beside the configuration of this one.
   for (const char* result : {"campaign.json", "report.html", "log.txt"})
     fs::remove(session.directory / result);
@@ -183,7 +199,8 @@ ExitCode run_campaign(const Arguments& arguments, const Cluster* cluster,
   else
     work(plan, board, session.workers, stop);
   progress.reset();
-  return conclude(session, board, std::chrono::duration<double>(Clock::now() - start).count());
+  return conclude(session, board,
+                  earlier + std::chrono::duration<double>(Clock::now() - start).count());
 }
 
 }  // namespace libslam

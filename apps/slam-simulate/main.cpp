@@ -134,7 +134,8 @@ void add_options(CLI::App& app, Arguments& arguments) {
                                         std::string(git_revision()) + ")");
   app.footer(
       "Example: slam-simulate config/sim_webmap.yaml --seed 7 --out sim1\n"
-      "Writes X.rawlog, X.truth.tum, X.truth.csv, X.landmarks.csv, X.truth.json, X.scenario.yaml.");
+      "Writes X.rawlog, X.truth.tum, X.truth.csv, X.landmarks.csv, X.truth.json, X.scenario.yaml,\n"
+      "and X.filter.yaml, what the robot knows about itself: slam-run X.filter.yaml X.rawlog");
 }
 
 }  // namespace

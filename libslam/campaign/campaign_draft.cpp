@@ -73,14 +73,15 @@ void require_name(const std::filesystem::path& file, const YamlEntry& variant) {
 
 VariantDraft read_variant(const std::filesystem::path& file, const YamlEntry& entry) {
   require_name(file, entry);
-  VariantDraft variant{entry.key, false, {}};
+  VariantDraft variant{entry.key, Engine::kLibslam, {}};
   if (entry.value.is_null()) return variant;
   variant.changes = expect_mapping(file, entry.value, "a variant");
   std::erase_if(variant.changes.entries, [&](const YamlEntry& change) {
     if (change.key != "engine") return false;
-    if (change.value.text != "mrpt" && change.value.text != "libslam")
-      fail(file, change.value.place, "engine: one of libslam, mrpt");
-    variant.mrpt = change.value.text == "mrpt";
+    const std::string& name = change.value.text;
+    if (name != "libslam" && name != "mrpt" && name != "mrpt_davison")
+      fail(file, change.value.place, "engine: one of libslam, mrpt, mrpt_davison");
+    if (name != "libslam") variant.engine = name == "mrpt" ? Engine::kMrpt : Engine::kMrptDavison;
     return true;
   });
   return variant;
@@ -121,7 +122,7 @@ CampaignDraft read_file(const std::filesystem::path& file, CampaignParameters& c
                "; valid are campaign, scenario, filter, variants and grid");
     }
   }
-  if (draft.variants.empty()) draft.variants.push_back({"filter", false, {}});
+  if (draft.variants.empty()) draft.variants.push_back({"filter", Engine::kLibslam, {}});
   if (draft.variants.size() > kMostVariants)
     throw ConfigError(file.string() + ": more than " + std::to_string(kMostVariants) + " variants");
   return draft;

@@ -19,7 +19,7 @@ struct GridAxis {
 
 struct VariantDraft {
   std::string name;
-  bool mrpt = false;
+  Engine engine = Engine::kLibslam;
   YamlNode changes;  ///< a mapping
 };
 

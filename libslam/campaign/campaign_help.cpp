@@ -24,7 +24,7 @@ variants:                                # name -> changes of the filter
   standard: {filter: {error_frame: standard}}
   calibrated:
     calibration: {scale_left: {enabled: true}, scale_right: {enabled: true}}
-  mrpt: {engine: mrpt}                   # MRPT's CRangeBearingKFSLAM2D
+  mrpt: {engine: mrpt}                   # MRPT's CRangeBearingKFSLAM2D; mrpt_davison: by its other method
 grid:                                    # every combination is a point
   scenario.truth.scale_left, scenario.truth.scale_right: [1, 1.05]   # joined: change together
   filter.measurement.sigma_range: [0.2, 0.4]

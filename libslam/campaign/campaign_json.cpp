@@ -77,7 +77,7 @@ std::vector<double> times_of(std::size_t observations, double period_s) {
   return times;
 }
 
-/// Mean over the updates that have one.
+/// Mean over the observations that have one; NaN, null in JSON, without any.
 double time_mean_of(const NeesBand& band) {
   double sum = 0.0;
   std::size_t count = 0;
@@ -86,7 +86,7 @@ double time_mean_of(const NeesBand& band) {
       sum += value;
       ++count;
     }
-  return count > 0 ? sum / static_cast<double>(count) : 0.0;
+  return count > 0 ? sum / static_cast<double>(count) : std::nan("");
 }
 
 Json nees_of(const Cell& cell, const CampaignPlan& plan, double observation_period_s) {

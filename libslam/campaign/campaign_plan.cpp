@@ -40,33 +40,43 @@ Scenario make_scenario(const CampaignDraft& draft) {
   return scenario;
 }
 
-/// What a robot knows about itself.
-Parameters nominal_filter(const Scenario& scenario) {
-  Parameters p;
-  p.input.odometry = scenario.log.odometry;
-  p.motion = scenario.motion;
-  p.motion.noise.from_log = false;
-  p.measurement.noise = "configured";
-  p.measurement.sigma_range = scenario.range_bearing.sigma_range;
-  p.measurement.sigma_bearing_deg = scenario.range_bearing.sigma_bearing_deg;
-  p.association.gate_probability = 1.0;
-  if (!scenario.log.identities) {
-    p.association.method = "nearest_neighbour";
-    p.association.gate_probability = 0.99;
+const char* engine_note(Engine engine) {
+  switch (engine) {
+    case Engine::kMrpt:
+      return " (MRPT)";
+    case Engine::kMrptDavison:
+      return " (MRPT, Davison's method)";
+    case Engine::kLibslam:
+      break;
   }
-  return p;
+  return "";
+}
+
+/// Keys that MRPT's class would silently ignore.
+void require_mrpt_can(const Parameters& p) {
+  const CalibrationParameters& c = p.calibration;
+  for (const CalibrationParameter* parameter :
+       {&c.scale_left, &c.scale_right, &c.track_width, &c.scale_speed, &c.scale_steering,
+        &c.bias_steering})
+    if (parameter->enabled)
+      throw ConfigError(
+          "engine mrpt: it cannot calibrate; enable calibration in our variants only");
+  if (p.filter.linearization != "estimate" || p.filter.initial_sigma_xy > 0.0 ||
+      p.filter.initial_sigma_heading_deg > 0.0)
+    throw ConfigError("engine mrpt: it linearizes at the estimate and starts from a known pose");
 }
 
 Variant make_variant(const CampaignDraft& draft, const VariantDraft& description,
                      const Scenario& scenario,
                      const std::vector<std::pair<std::string, std::string>>& filter_settings) {
-  Variant variant{description.name, description.mrpt, nominal_filter(scenario)};
+  Variant variant{description.name, description.engine, nominal_filter(scenario)};
   const ParameterTable table(variant.parameters);
   apply_node(table, draft.filter, draft.file);
   for (const std::string& setting : draft.filter_settings) set_parameter(table, setting);
   for (const auto& [key, value] : filter_settings) assign_parameter(table, key, value);
   load_yaml(table, description.changes, draft.file.string());
   validate(variant.parameters, {}, TruthAccess::kSimulation);
+  if (variant.engine != Engine::kLibslam) require_mrpt_can(variant.parameters);
   return variant;
 }
 
@@ -181,7 +191,7 @@ std::string to_yaml(const CampaignPlan& plan) {
     for (const auto& [key, value] : point.settings) yaml += " " + key + "=" + value;
     yaml += "\n" + to_yaml(ParameterTable(scenario));
     for (const Variant& variant : point.variants)
-      yaml += "---\n# filter " + variant.name + (variant.mrpt ? " (MRPT)" : "") + "\n" +
+      yaml += "---\n# filter " + variant.name + engine_note(variant.engine) + "\n" +
               to_yaml(variant.parameters);
   }
   return yaml;

@@ -48,10 +48,13 @@ struct CampaignParameters {
   }
 };
 
+/// Whose filter: ours, or MRPT's CRangeBearingKFSLAM2D with its default or with Davison's method.
+enum class Engine { kLibslam, kMrpt, kMrptDavison };
+
 /// A filter of a campaign.
 struct Variant {
   std::string name;
-  bool mrpt = false;  ///< MRPT's CRangeBearingKFSLAM2D instead of ours
+  Engine engine = Engine::kLibslam;
   Parameters parameters;
 };
 

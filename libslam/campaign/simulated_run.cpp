@@ -26,13 +26,16 @@ using Clock = std::chrono::steady_clock;
 class Contestant {
  public:
   Contestant(const Variant& variant, const TrueState& truth) {
-    if (variant.mrpt)
-      mrpt_ = std::make_unique<MrptFilter>(variant.parameters);
-    else
+    if (variant.engine == Engine::kLibslam)
       pipeline_ = std::make_unique<Pipeline>(variant.parameters, &truth);
+    else
+      mrpt_ =
+          std::make_unique<MrptFilter>(variant.parameters, variant.engine == Engine::kMrptDavison
+                                                               ? MrptFilter::Method::kDavison
+                                                               : MrptFilter::Method::kDefault);
   }
 
-  /// Nothing from MRPT between sightings.
+  /// Nothing from MRPT between observations.
   std::optional<StepRecord> process(const LogStep& step) {
     return mrpt_ ? mrpt_->process(step) : pipeline_->process(step);
   }
@@ -80,7 +83,7 @@ class Lane {
       seconds_ += std::chrono::duration<double>(Clock::now() - start).count();
       // All filters know the start, also one that says nothing before its first update.
       if (!record && path_.empty()) record = start_of(step);
-      if (record) judge(*record, truth);
+      if (record) judge(*record, truth, step.frame != nullptr);
     });
   }
 
@@ -104,7 +107,7 @@ class Lane {
     }
   }
 
-  void judge(const StepRecord& record, const Eigen::Vector3d& truth) {
+  void judge(const StepRecord& record, const Eigen::Vector3d& truth, bool observed) {
     statistics_.add(record);
     const double error = (record.pose - truth).head<2>().norm();
     if (!contestant_->healthy() || !record.pose.allFinite() || !record.cov.allFinite() ||
@@ -112,8 +115,8 @@ class Lane {
       status_ = "diverged";
       return;
     }
-    // Steps between observations repeat what the next one says better.
-    if (path_.empty() || record.accepted > 0 || record.new_landmarks > 0) {
+    // All filters are judged at all observations, whether they used them or not.
+    if (path_.empty() || observed) {
       path_.push_back({record.index, record.time, record.pose, record.cov});
       observation_of_pose_.push_back(observations_ - 1);
     }

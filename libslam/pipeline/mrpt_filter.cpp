@@ -19,35 +19,35 @@ namespace {
 
 using mrpt::obs::CObservationBearingRange;
 
-/// The motion since the last frame, with the covariance of our motion model.
-class AccumulatedMotion {
+CalibrationParameters constants_of(CalibrationParameters calibration) {
+  for (CalibrationParameter* parameter :
+       {&calibration.scale_left, &calibration.scale_right, &calibration.track_width,
+        &calibration.scale_speed, &calibration.scale_steering, &calibration.bias_steering})
+    parameter->enabled = false;
+  return calibration;
+}
+
+/// A pose and its covariance, moved by our motion model.
+class MovedPose {
  public:
-  explicit AccumulatedMotion(const Parameters& parameters)
-      : model_(make_motion_model(parameters.motion, {}, parameters.input)),
+  explicit MovedPose(const Parameters& parameters)
+      : model_(make_motion_model(parameters.motion, constants_of(parameters.calibration),
+                                 parameters.input)),
         pose_(state_.add({"pose", Chart::kSE2, 3, WorldRole::kPose}, Eigen::Vector3d::Zero(),
                          Eigen::Matrix3d::Zero())) {}
 
+  void set(const Eigen::Vector3d& mean, const Eigen::Matrix3d& cov) {
+    state_.set_estimate(pose_, mean);
+    cov_ = cov;
+  }
   void add(const MotionAction& action) {
     model_->linearize(state_, pose_, {}, action, step_);
     const Eigen::Matrix3d f = step_.wrt.begin()->jacobian;
     cov_ = f * cov_ * f.transpose() + step_.cov_noise;
     state_.set_estimate(pose_, step_.estimate);
   }
-
-  mrpt::obs::CActionCollection::Ptr take() {
-    mrpt::poses::CPosePDFGaussian change;
-    const auto mean = state_.estimate(pose_);
-    change.mean = {mean[0], mean[1], mean[2]};
-    change.cov = mrpt::math::CMatrixDouble33(cov_);
-    mrpt::obs::CActionRobotMovement2D movement;
-    movement.rawOdometryIncrementReading = change.mean;
-    movement.poseChange = mrpt::poses::CPosePDFGaussian::Create(change);
-    auto actions = mrpt::obs::CActionCollection::Create();
-    actions->insert(movement);
-    state_.set_estimate(pose_, Eigen::Vector3d::Zero());
-    cov_.setZero();
-    return actions;
-  }
+  Eigen::Vector3d mean() const { return state_.estimate(pose_); }
+  const Eigen::Matrix3d& cov() const { return cov_; }
 
  private:
   std::unique_ptr<MotionModel> model_;
@@ -56,6 +56,19 @@ class AccumulatedMotion {
   Eigen::Matrix3d cov_ = Eigen::Matrix3d::Zero();
   MotionStep step_;
 };
+
+mrpt::obs::CActionCollection::Ptr action_of(const MovedPose& motion) {
+  mrpt::poses::CPosePDFGaussian change;
+  const Eigen::Vector3d mean = motion.mean();
+  change.mean = {mean[0], mean[1], mean[2]};
+  change.cov = mrpt::math::CMatrixDouble33(motion.cov());
+  mrpt::obs::CActionRobotMovement2D movement;
+  movement.rawOdometryIncrementReading = change.mean;
+  movement.poseChange = mrpt::poses::CPosePDFGaussian::Create(change);
+  auto actions = mrpt::obs::CActionCollection::Create();
+  actions->insert(movement);
+  return actions;
+}
 
 /// A frame with the sightings that the configuration lets through; null if there are none.
 mrpt::obs::CSensoryFrame::Ptr usable_frame(const mrpt::obs::CSensoryFrame::Ptr& frame,
@@ -78,31 +91,33 @@ mrpt::obs::CSensoryFrame::Ptr usable_frame(const mrpt::obs::CSensoryFrame::Ptr& 
 
 class MrptFilter::Impl {
  public:
-  explicit Impl(const Parameters& parameters)
-      : parameters_(parameters), odometry_(parameters.input), motion_(parameters) {
+  Impl(const Parameters& parameters, Method method)
+      : parameters_(parameters),
+        odometry_(parameters.input),
+        since_update_(parameters),
+        predicted_(parameters) {
     filter_.options.std_sensor_range = static_cast<float>(parameters.measurement.sigma_range);
     filter_.options.std_sensor_yaw =
         static_cast<float>(parameters.measurement.sigma_bearing_deg * kPi / 180.0);
     filter_.options.data_assoc_IC_chi2_thres = parameters.association.gate_probability;
+    filter_.KF_options.method =
+        method == Method::kDavison ? mrpt::bayes::kfEKFAlaDavison : mrpt::bayes::kfEKFNaive;
     filter_.setMinLoggingLevel(mrpt::system::LVL_ERROR);
   }
 
   std::optional<StepRecord> process(const LogStep& step) {
     if (step.action)
-      if (const auto action = odometry_.read(step)) motion_.add(*action);
-    auto frame = usable_frame(step.frame, parameters_);
-    if (!frame) return std::nullopt;
-    auto actions = motion_.take();
-    filter_.processActionObservation(actions, frame);
-    const auto used = frame->getObservationByClass<CObservationBearingRange>();
-    mrpt::poses::CPosePDFGaussian pose;
-    filter_.getCurrentRobotPose(pose);
+      if (const auto action = odometry_.read(step)) {
+        since_update_.add(*action);
+        predicted_.add(*action);
+      }
+    if (!step.frame) return std::nullopt;
     StepRecord record;
     record.index = step.index;
     record.time = step.time;
-    record.pose = {pose.mean.x(), pose.mean.y(), pose.mean.phi()};
-    record.cov = pose.cov.asEigen();
-    record.accepted = static_cast<int>(used->sensedData.size());
+    if (auto frame = usable_frame(step.frame, parameters_)) record.accepted = update(frame);
+    record.pose = predicted_.mean();
+    record.cov = predicted_.cov();
     return record;
   }
 
@@ -125,13 +140,27 @@ class MrptFilter::Impl {
   }
 
  private:
+  /// Returns the number of sightings.
+  int update(mrpt::obs::CSensoryFrame::Ptr& frame) {
+    auto actions = action_of(since_update_);
+    const auto seen = frame->getObservationByClass<CObservationBearingRange>();
+    const int sightings = static_cast<int>(seen->sensedData.size());
+    filter_.processActionObservation(actions, frame);
+    mrpt::poses::CPosePDFGaussian pose;
+    filter_.getCurrentRobotPose(pose);
+    since_update_.set(Eigen::Vector3d::Zero(), Eigen::Matrix3d::Zero());
+    predicted_.set({pose.mean.x(), pose.mean.y(), pose.mean.phi()}, pose.cov.asEigen());
+    return sightings;
+  }
+
   Parameters parameters_;
   OdometryReader odometry_;
-  AccumulatedMotion motion_;
+  MovedPose since_update_, predicted_;
   mrpt::slam::CRangeBearingKFSLAM2D filter_;
 };
 
-MrptFilter::MrptFilter(const Parameters& parameters) : impl_(std::make_unique<Impl>(parameters)) {}
+MrptFilter::MrptFilter(const Parameters& parameters, Method method)
+    : impl_(std::make_unique<Impl>(parameters, method)) {}
 MrptFilter::~MrptFilter() = default;
 
 std::optional<StepRecord> MrptFilter::process(const LogStep& step) {

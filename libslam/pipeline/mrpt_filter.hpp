@@ -12,18 +12,24 @@
 namespace libslam {
 
 /// `CRangeBearingKFSLAM2D` with the sensor noise and gate of a configuration. The motion since the
-/// last sighting is composed with the covariance of our nominal motion model: the class accepts no
-/// motion without an observation, and has no calibration.
+/// last sighting is composed with the covariance of our motion model: the class accepts no motion
+/// without an observation. It has no calibration: the model takes the prior means as constants. And
+/// it drops the motion before its first landmark, so that its path starts there.
 class MrptFilter {
  public:
-  /// `parameters` must be valid; its calibration is ignored.
-  explicit MrptFilter(const Parameters& parameters);
+  /// The default updates P by (I - K H) P, which does not keep it symmetric; Davison's updates one
+  /// measurement after the other and does not recompute the innovations.
+  enum class Method { kDefault, kDavison };
+
+  /// `parameters` must be valid.
+  explicit MrptFilter(const Parameters& parameters, Method method = Method::kDefault);
   ~MrptFilter();
   MrptFilter(const MrptFilter&) = delete;
   MrptFilter& operator=(const MrptFilter&) = delete;
 
-  /// Pose and covariance after an update; nothing for a step without usable sightings.
-  /// Throws what MRPT throws.
+  /// Pose and covariance at an observation: after the update, or, without usable sightings,
+  /// predicted by the motion since the last one. Nothing for a step without frame. Throws what MRPT
+  /// throws.
   std::optional<StepRecord> process(const LogStep& step);
   LandmarkMap landmarks() const;
 

@@ -52,8 +52,9 @@ Scenario make_portable(Scenario scenario, const World& world, const fs::path& ra
   replace_file(way_points, way_points_text(world));
   scenario.world.way_points_file = way_points.filename().string();
   scenario.world.landmarks_file = beside(rawlog, ".landmarks.csv").filename().string();
+  const fs::path walls = beside(rawlog, ".walls.csv");
+  fs::remove(walls);  // of an earlier drive
   if (!world.walls.empty()) {
-    const fs::path walls = beside(rawlog, ".walls.csv");
     replace_file(walls, walls_text(world));
     scenario.world.walls_file = walls.filename().string();
   }
@@ -111,6 +112,7 @@ DriveSummary simulate_drive(const DriveRequest& request) {
   writer.finish(simulator->landmarks(), simulator->calibration(), notes_of(portable, summary));
   Scenario effective = portable;
   replace_file(beside(request.rawlog, ".scenario.yaml"), to_yaml(ParameterTable(effective)));
+  replace_file(beside(request.rawlog, ".filter.yaml"), to_yaml(nominal_filter(effective)));
   if (failure) std::rethrow_exception(failure);
   return summary;
 }

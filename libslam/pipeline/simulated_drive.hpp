@@ -24,8 +24,9 @@ struct DriveSummary {
 };
 
 /// Writes the files of SimulatedLogWriter, and X.scenario.yaml: the complete effective scenario,
-/// which gives the same bytes again. A world that came from files goes with it (X.way_points.csv,
-/// X.walls.csv), so that the files can be moved together.
+/// which gives the same bytes again, and X.filter.yaml (nominal_filter) for slam-run. A world that
+/// came from files goes with it (X.way_points.csv, X.walls.csv), so that the files can be moved
+/// together.
 ///
 /// Throws InputError where a file of the world cannot be used, std::runtime_error where a file
 /// cannot be written, or the way cannot be driven; what was driven so far is saved then, too.

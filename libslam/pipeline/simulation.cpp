@@ -1,3 +1,4 @@
+#include <cmath>
 #include <utility>
 
 #include <libslam/config/yaml_loader.hpp>
@@ -12,6 +13,22 @@ namespace libslam {
 
 namespace {
 
+/// Beyond this distance from the origin [m] a coordinate has lost its millimetres, and grids and
+/// time limits computed from it would overflow.
+constexpr double kFarthest = 1e6;
+
+double coordinate(const TextReader& row, std::size_t column) {
+  const double value = row.number(column);
+  if (!(std::abs(value) <= kFarthest)) row.reject("a coordinate is beyond 1e6 m");
+  return value;
+}
+
+void require_near(const std::string& file, const std::vector<TrueLandmark>& points) {
+  for (const TrueLandmark& point : points)
+    if (!(point.position.cwiseAbs().maxCoeff() <= kFarthest))
+      throw InputError(file + ": point " + std::to_string(point.id) + " is beyond 1e6 m");
+}
+
 std::vector<Wall> read_walls(const std::string& file) {
   TextReader row(file);
   std::vector<Wall> walls;
@@ -19,7 +36,8 @@ std::vector<Wall> read_walls(const std::string& file) {
   while (row.next()) {
     if (std::exchange(first, false) && row.word(0) == "x1") continue;
     if (row.columns() != 4) row.reject("a wall has the columns x1,y1,x2,y2");
-    walls.push_back({{row.number(0), row.number(1)}, {row.number(2), row.number(3)}});
+    walls.push_back(
+        {{coordinate(row, 0), coordinate(row, 1)}, {coordinate(row, 2), coordinate(row, 3)}});
   }
   return walls;
 }
@@ -31,13 +49,16 @@ std::vector<TrueLandmark> read_landmarks(const std::string& file) {
     if (landmark.id < 0 || landmark.id > INT32_MAX)
       throw InputError(file + ": landmark id " + std::to_string(landmark.id) +
                        " is none of 0 to 2147483647");
+  require_near(file, landmarks);
   return landmarks;
 }
 
 World read_world(const WorldParameters& files, const DriveParameters& drive) {
   World world;
   world.landmarks = read_landmarks(files.landmarks_file);
-  for (const TrueLandmark& point : read_true_landmarks(files.way_points_file))
+  const std::vector<TrueLandmark> way_points = read_true_landmarks(files.way_points_file);
+  require_near(files.way_points_file, way_points);
+  for (const TrueLandmark& point : way_points)
     world.way_points.emplace_back(point.position.head<2>());
   if (!files.walls_file.empty()) world.walls = read_walls(files.walls_file);
   world.T_world_start = {drive.start_x, drive.start_y, to_radians(drive.start_heading_deg)};
@@ -74,6 +95,22 @@ void resolve_world_files(Scenario& scenario, const std::filesystem::path& direct
   WorldParameters& world = scenario.world;
   for (std::string* name : {&world.landmarks_file, &world.way_points_file, &world.walls_file})
     if (!name->empty()) *name = (directory / *name).string();
+}
+
+Parameters nominal_filter(const Scenario& scenario) {
+  Parameters p;
+  p.input.odometry = scenario.log.odometry;
+  p.motion = scenario.motion;
+  p.motion.noise.from_log = false;
+  p.measurement.noise = "configured";
+  p.measurement.sigma_range = scenario.range_bearing.sigma_range;
+  p.measurement.sigma_bearing_deg = scenario.range_bearing.sigma_bearing_deg;
+  p.association.gate_probability = 1.0;
+  if (!scenario.log.identities) {
+    p.association.method = "nearest_neighbour";
+    p.association.gate_probability = 0.99;
+  }
+  return p;
 }
 
 World make_world(const Scenario& scenario) {

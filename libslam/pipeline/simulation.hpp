@@ -19,6 +19,10 @@ Scenario load_scenario(const std::filesystem::path& file, ParameterPlaces* place
 /// Makes the names of world files that are relative start at `directory`.
 void resolve_world_files(Scenario& scenario, const std::filesystem::path& directory);
 
+/// What the robot of a scenario knows about itself: its nominal vehicle with the noise of the
+/// odometry, the odometry field, and the nominal noise of its range-bearing sensor.
+Parameters nominal_filter(const Scenario& scenario);
+
 /// All conflicts between parameters, ranges included.
 std::vector<Conflict> find_conflicts(const Scenario& scenario);
 /// Throws ConfigError with the first conflict.

@@ -126,7 +126,7 @@ std::optional<RelativeErrors> compare_relative(std::span<const EstimatedPose> es
   return errors;
 }
 
-// Smallest pivot of a correlation matrix that is more than the rounding of its entries, with a
+// Smallest eigenvalue of a correlation matrix that is more than the rounding of its entries, with a
 // margin: the first motion from a known pose has a covariance of rank two.
 constexpr double kSingular = 1e-12;
 
@@ -145,10 +145,15 @@ std::vector<double> pose_nees(std::span<const EstimatedPose> estimate, const Tra
     // Scaled by its standard deviations, so that a direction without variance shows in any unit.
     const Eigen::Matrix3d& cov = estimate[m.estimate].cov;
     const Eigen::Vector3d scale = cov.diagonal().cwiseSqrt().cwiseInverse();
-    const Eigen::LDLT<Eigen::Matrix3d> factors(scale.asDiagonal() * cov * scale.asDiagonal());
-    const bool regular = scale.allFinite() && factors.vectorD().minCoeff() > kSingular;
-    const Eigen::Vector3d scaled = scale.cwiseProduct(e);
-    values.push_back(regular ? scaled.dot(factors.solve(scaled))
+    if (!scale.allFinite()) {
+      values.push_back(std::numeric_limits<double>::quiet_NaN());
+      continue;
+    }
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> spectrum(scale.asDiagonal() * cov *
+                                                                  scale.asDiagonal());
+    const Eigen::Vector3d along = spectrum.eigenvectors().transpose() * scale.cwiseProduct(e);
+    const bool regular = spectrum.eigenvalues()[0] > kSingular;
+    values.push_back(regular ? along.cwiseAbs2().cwiseQuotient(spectrum.eigenvalues()).sum()
                              : std::numeric_limits<double>::quiet_NaN());
   }
   return values;

@@ -88,8 +88,8 @@ struct DriveParameters {
             {"deg/s", "Fastest turn (differential, odometry_increment).", 0.01});
     v.value("turn_gain", turn_gain,
             {"1/s", "Turn rate per heading error (differential, odometry_increment).", 1e-3});
-    v.value("start_x", start_x, {"m", "Start pose (file; else the first way-point)."});
-    v.value("start_y", start_y, {"m", "Start pose (file)."});
+    v.value("start_x", start_x, {"m", "Start pose (file; else the first way-point).", -1e6, 1e6});
+    v.value("start_y", start_y, {"m", "Start pose (file).", -1e6, 1e6});
     v.value("start_heading_deg", start_heading_deg, {"deg", "Start heading (file)."});
   }
 };

@@ -29,8 +29,8 @@ class SlamSimulate : public ProgramTest {
 
 TEST_F(SlamSimulate, WritesTheFilesOfTheContractAndReproducesThem) {
   ASSERT_EQ(run(kSimulate + " " + kWebmap + " --seed 7 --out " + path("a") + kShort).code, 0);
-  for (const char* ending :
-       {".rawlog", ".truth.tum", ".truth.csv", ".landmarks.csv", ".truth.json", ".scenario.yaml"})
+  for (const char* ending : {".rawlog", ".truth.tum", ".truth.csv", ".landmarks.csv", ".truth.json",
+                             ".scenario.yaml", ".filter.yaml"})
     EXPECT_TRUE(std::filesystem::exists(path("a") + ending)) << ending;
   const auto notes = nlohmann::json::parse(read_all(path("a.truth.json")));
   EXPECT_EQ(notes.at("seed"), 7);

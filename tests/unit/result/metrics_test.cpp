@@ -151,6 +151,22 @@ TEST(Nees, HandComputedInTheFrameOfTheFilter) {
   EXPECT_TRUE(summary->quarter_mean[2] && summary->quarter_mean[3]);
 }
 
+// The first motion of a vehicle that cannot go sideways leaves a covariance of rank two, in which
+// rounding makes any error look impossible.
+TEST(Nees, CovariancesThatAreSingularUpToRoundingHaveNone) {
+  std::vector<EstimatedPose> path = path_of({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}});
+  Eigen::Matrix<double, 3, 2> g;
+  g << 3.5e-3, 1.7e-5, 9.1e-5, 2.6e-3, 1.2e-6, 6.6e-4;
+  path[0].cov.setZero();
+  path[1].cov = g * g.transpose();
+  path[2].cov = path[1].cov + 1e-9 * Eigen::Matrix3d::Identity();
+  const Trajectory truth{{0, 1, 2}, {{0, 0, 0}, {1, 1e-7, 0}, {2, 0, 0}}, true};
+  const auto nees = pose_nees(path, truth, match_poses(path, truth));
+  ASSERT_EQ(nees.size(), 3u);
+  EXPECT_TRUE(std::isnan(nees[1]));
+  EXPECT_TRUE(std::isfinite(nees[2]));
+}
+
 TEST(Nees, SampledGaussianErrorsGiveThreeWithinTheoryBounds) {
   constexpr int kSteps = 4000;
   const sample::Run run = sample::make_run(kSteps + 1, 20240611);

@@ -2,8 +2,12 @@
 // One feature as a front-end delivers it: a measurement that a model can predict.
 
 #include <cstdint>
+#include <memory>
 
 #include <Eigen/Core>
+
+#include <libslam/data/descriptor.hpp>
+#include <libslam/data/stereo_camera.hpp>
 
 namespace libslam {
 
@@ -20,9 +24,12 @@ inline constexpr std::int64_t kNoIdentity = -1;
 /// A measurement in the sensor frame with its noise and where the sensor sits on the robot.
 struct Feature {
   std::int64_t id = kNoIdentity;  ///< identity from the sensor, or kNoIdentity
-  MeasurementVector z;            ///< range-bearing: range [m], bearing [rad]
+  int channel = 0;                ///< sensor it comes from: noise is adapted per channel
+  MeasurementVector z;            ///< range-bearing: range [m], bearing [rad]; stereo: u, v, d [px]
   MeasurementMatrix cov;          ///< covariance of z
   Eigen::Vector3d T_robot_sensor = Eigen::Vector3d::Zero();  ///< x [m], y [m], phi [rad]
+  std::shared_ptr<const StereoCamera> camera;                ///< of a stereo point, else null
+  std::shared_ptr<const Descriptor> appearance;              ///< null: not known
 };
 
 }  // namespace libslam

@@ -17,6 +17,8 @@ struct MotionAction {
   std::optional<Eigen::Matrix3d> cov_increment;         ///< covariance of `increment`
   std::optional<Eigen::Vector2d> velocity;              ///< mean v [m/s], omega [rad/s] over dt
   std::optional<Eigen::Vector2d> ticks;                 ///< encoder ticks left, right over dt [1]
+  /// Mean velocity of the body over dt in its own frame: vx, vy, vz [m/s], wx, wy, wz [rad/s].
+  std::optional<Eigen::Matrix<double, 6, 1>> twist;
 };
 
 }  // namespace libslam

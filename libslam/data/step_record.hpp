@@ -2,10 +2,13 @@
 // What one step of a run leaves behind for the recorder.
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <Eigen/Core>
+
+#include <libslam/data/spatial_pose.hpp>
 
 namespace libslam {
 
@@ -34,6 +37,7 @@ struct StepRecord {
   double time = 0.0;       ///< [s], as in the log
   Eigen::Vector3d pose = Eigen::Vector3d::Zero();
   Eigen::Matrix3d cov = Eigen::Matrix3d::Zero();
+  std::optional<SpatialEstimate> spatial;  ///< of a run in space; pose and cov are its shadow then
   double nis = 0.0;  ///< normalized innovation squared of the joint update, 0 without update
   int nis_dof = 0;   ///< degrees of freedom of `nis`
   int accepted = 0, gated = 0, ambiguous = 0, new_landmarks = 0;

@@ -1,0 +1,35 @@
+#pragma once
+// The estimator.
+
+#include <string>
+
+#include <libslam/config/description.hpp>
+
+namespace libslam {
+
+/// Section `filter`.
+struct FilterParameters {
+  std::string error_frame = "right_invariant";
+  std::string linearization = "estimate";
+  double initial_sigma_xy = 0.0;
+  double initial_sigma_heading_deg = 0.0;
+
+  void describe(auto& v) {
+    v.value("error_frame", error_frame,
+            {"", "Error that the covariance describes.", 0, 0, {"standard", "right_invariant"}});
+    v.value(
+        "linearization", linearization,
+        {"",
+         "Where derivatives are taken: at the estimate, at the first estimates of landmarks and "
+         "the predicted pose, or at the truth (simulations only).",
+         0,
+         0,
+         {"estimate", "first_estimate", "at_truth"}});
+    v.value("initial_sigma_xy", initial_sigma_xy,
+            {"m", "Standard deviation of the start position.", 0});
+    v.value("initial_sigma_heading_deg", initial_sigma_heading_deg,
+            {"deg", "Standard deviation of the start heading.", 0});
+  }
+};
+
+}  // namespace libslam

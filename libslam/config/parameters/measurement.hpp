@@ -1,0 +1,63 @@
+#pragma once
+// Front-ends and measurement models.
+
+#include <string>
+
+#include <libslam/config/description.hpp>
+
+namespace libslam {
+
+/// Section `frontend`.
+struct FrontendParameters {
+  std::string source = "range_bearing";
+  double min_range = 0.0;
+  double max_range = 1e6;
+
+  void describe(auto& v) {
+    v.value("source", source,
+            {"",
+             "Where features come from: range-bearing observations, or the path that a sensor "
+             "reports of itself (odometry observations labelled input.sensor_label).",
+             0,
+             0,
+             {"range_bearing", "sensor_path"}});
+    v.value("min_range", min_range, {"m", "Nearer observations are ignored.", 0});
+    v.value("max_range", max_range, {"m", "Farther observations are ignored.", 0});
+  }
+};
+
+/// Section `measurement`.
+struct MeasurementParameters {
+  std::string model = "range_bearing";
+  std::string noise = "auto";
+  double sigma_range = 0.1;
+  double sigma_bearing_deg = 1.0;
+  double sigma_displacement_xy = 0.001;
+  double sigma_displacement_heading_deg = 0.1;
+
+  void describe(auto& v) {
+    v.value("model", model,
+            {"",
+             "Measurement model: of landmarks, or of the displacement of a sensor (no map).",
+             0,
+             0,
+             {"range_bearing", "sensor_displacement"}});
+    v.value(
+        "noise", noise,
+        {"",
+         "Noise of an observation: per-observation covariance of the log where it has one, the "
+         "log's sensor sigmas, else the configured sigmas (auto), or always the configured ones.",
+         0,
+         0,
+         {"auto", "configured"}});
+    v.value("sigma_range", sigma_range, {"m", "Standard deviation of a range.", 1e-9});
+    v.value("sigma_bearing_deg", sigma_bearing_deg,
+            {"deg", "Standard deviation of a bearing.", 1e-9});
+    v.value("sigma_displacement_xy", sigma_displacement_xy,
+            {"m", "Standard deviation of a sensor's displacement along x and y, each.", 1e-9});
+    v.value("sigma_displacement_heading_deg", sigma_displacement_heading_deg,
+            {"deg", "Standard deviation of the turn of a displacement.", 1e-9});
+  }
+};
+
+}  // namespace libslam

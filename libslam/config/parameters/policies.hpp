@@ -1,0 +1,23 @@
+#pragma once
+// What adapts the filter while it runs.
+
+#include <libslam/config/description.hpp>
+
+namespace libslam {
+
+/// Section `policies`.
+struct PolicyParameters {
+  double update_period_s = 0.0;
+  int update_every_n = 1;
+
+  void describe(auto& v) {
+    v.value("update_period_s", update_period_s,
+            {"s",
+             "Shortest time between two updates; sensor errors of real logs are correlated in time "
+             "and more frequent updates make the filter overconfident.",
+             0});
+    v.value("update_every_n", update_every_n, {"1", "Use every n-th observation frame only.", 1});
+  }
+};
+
+}  // namespace libslam

@@ -1,0 +1,108 @@
+#include <array>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include <libslam/config/rules/rules.hpp>
+
+namespace libslam {
+namespace {
+
+struct CalibrationEntry {
+  const char* name;
+  const CalibrationParameter& parameter;
+  bool is_scale;
+  bool of_differential, of_ackermann;  ///< the motion model has this parameter
+};
+
+std::array<CalibrationEntry, 6> list_calibration(const CalibrationParameters& c) {
+  return {{{"scale_left", c.scale_left, true, true, true},
+           {"scale_right", c.scale_right, true, true, true},
+           {"track_width", c.track_width, true, true, false},
+           {"scale_speed", c.scale_speed, true, false, true},
+           {"scale_steering", c.scale_steering, true, false, true},
+           {"bias_steering", c.bias_steering, false, false, true}}};
+}
+
+void check_no_odometry(const Parameters& p, Conflicts& conflicts) {
+  if (!(p.motion.no_odometry_sigma_xy > 0.0) || !(p.motion.no_odometry_sigma_heading_deg > 0.0)) {
+    conflicts.push_back(
+        {{"input.odometry", "motion.no_odometry_sigma_xy", "motion.no_odometry_sigma_heading_deg"},
+         "without odometry and without noise in its place the robot could never "
+         "move"});
+  }
+  for (const CalibrationEntry& entry : list_calibration(p.calibration)) {
+    if (entry.parameter.enabled) {
+      conflicts.push_back(
+          {{std::string("calibration.") + entry.name + ".enabled", "input.odometry"},
+           "without odometry there is nothing to calibrate"});
+    }
+  }
+}
+
+}  // namespace
+
+void check_input(const Parameters& p, Conflicts& conflicts) {
+  if (p.input.odometry == "none") {
+    check_no_odometry(p, conflicts);
+  }
+  if (p.input.odometry != "ticks") {
+    return;
+  }
+  const bool both_rear_wheels = p.motion.model == "ackermann" && p.motion.encoder_offset == 0.0;
+  if (p.motion.model != "differential" && !both_rear_wheels) {
+    conflicts.push_back(
+        {{"input.odometry", "motion.model"},
+         "encoder ticks of a left and a right wheel drive the differential model, or "
+         "ackermann with encoder_offset 0; " +
+             p.motion.model + " needs increments or velocities"});
+    return;
+  }
+  for (const auto& [key, value] :
+       {std::pair("motion.metres_per_tick_left", p.motion.metres_per_tick_left),
+        std::pair("motion.metres_per_tick_right", p.motion.metres_per_tick_right)}) {
+    if (!(value > 0.0)) {
+      conflicts.push_back({{key, "input.odometry"}, "ticks need a positive travel per tick"});
+    }
+  }
+}
+
+void check_calibration(const Parameters& p, Conflicts& conflicts) {
+  const std::string& model = p.motion.model;
+  for (const CalibrationEntry& entry : list_calibration(p.calibration)) {
+    const std::string section = std::string("calibration.") + entry.name;
+    const CalibrationParameter& c = entry.parameter;
+    const bool is_observable = (model == "differential" && entry.of_differential) ||
+                               (model == "ackermann" && entry.of_ackermann);
+    if (c.enabled && !is_observable) {
+      conflicts.push_back({{section + ".enabled", "motion.model"},
+                           "motion model " + model +
+                               " does not depend on this parameter, so nothing could estimate it"});
+    }
+    if (c.enabled && !(c.prior_sigma > 0.0)) {
+      conflicts.push_back({{section + ".prior_sigma"},
+                           "a prior without uncertainty makes the parameter inert: it would never "
+                           "be updated"});
+    }
+    if (entry.is_scale && !(c.prior_mean > 0.0)) {
+      conflicts.push_back({{section + ".prior_mean"},
+                           "a factor must be positive, otherwise the robot stands or runs "
+                           "backwards"});
+    }
+  }
+  if (!(std::abs(p.calibration.bias_steering.prior_mean) < kPi / 2)) {
+    conflicts.push_back({{"calibration.bias_steering.prior_mean"},
+                         "a steering angle must stay within a quarter turn (pi/2 rad)"});
+  }
+  const bool has_wheel_scale =
+      p.calibration.scale_left.enabled || p.calibration.scale_right.enabled;
+  if (p.calibration.scale_speed.enabled && has_wheel_scale) {
+    conflicts.push_back({{"calibration.scale_speed.enabled",
+                          p.calibration.scale_left.enabled ? "calibration.scale_left.enabled"
+                                                           : "calibration.scale_right.enabled"},
+                         "the common speed factor and the factor of a wheel act on the same motion "
+                         "and cannot be told apart; enable one of them"});
+  }
+}
+
+}  // namespace libslam

@@ -1,0 +1,21 @@
+#pragma once
+// The rules of validation, a function per group; each appends what it finds.
+
+#include <vector>
+
+#include <libslam/config/validation.hpp>
+
+namespace libslam {
+
+using Conflicts = std::vector<Conflict>;
+
+void check_input(const Parameters& p, Conflicts& conflicts);
+void check_calibration(const Parameters& p, Conflicts& conflicts);
+void check_frontend(const Parameters& p, Conflicts& conflicts);
+/// Displacements of a sensor take the place of landmarks; the two do not mix.
+void check_displacement(const Parameters& p, Conflicts& conflicts);
+void check_association(const Parameters& p, Conflicts& conflicts);
+void check_filter(const Parameters& p, TruthAccess truth, Conflicts& conflicts);
+void check_policies(const Parameters& p, Conflicts& conflicts);
+
+}  // namespace libslam

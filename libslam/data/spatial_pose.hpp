@@ -1,0 +1,32 @@
+#pragma once
+// A pose in space and an estimate of one.
+
+#include <cmath>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+namespace libslam {
+
+/// T_world_body: position [m] and orientation (unit quaternion, world from body).
+struct SpatialPose {
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();
+  Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
+
+  Eigen::Isometry3d isometry() const { return Eigen::Translation3d(position) * rotation; }
+};
+
+/// Covariance in the additive chart of SE(3) blocks (state/block.hpp): position [m], then rotation
+/// vector in the world frame [rad].
+struct SpatialEstimate {
+  SpatialPose pose;
+  Eigen::Matrix<double, 6, 6> cov = Eigen::Matrix<double, 6, 6>::Zero();
+};
+
+/// Shadow of a pose on the ground: x [m], y [m], yaw [rad] (z-y-x convention).
+inline Eigen::Vector3d shadow_of(const SpatialPose& pose) {
+  const Eigen::Vector3d forward = pose.rotation * Eigen::Vector3d::UnitX();
+  return {pose.position.x(), pose.position.y(), std::atan2(forward.y(), forward.x())};
+}
+
+}  // namespace libslam

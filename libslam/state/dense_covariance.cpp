@@ -78,6 +78,15 @@ void DenseCovariance::gather(std::span<const PlacedJacobian> wrt, Index rows, In
   for (const PlacedJacobian& part : wrt) gather(part, first_column);
 }
 
+void DenseCovariance::assign(const MatrixRef& cov) {
+  if (cov.rows() != n_ || cov.cols() != n_)
+    throw_dimension("assign", "matrix is " + std::to_string(cov.rows()) + " x " +
+                                  std::to_string(cov.cols()) + " for dimension " +
+                                  std::to_string(n_));
+  observed_ = 0;
+  p_.topLeftCorner(n_, n_).triangularView<Eigen::Lower>() = cov;
+}
+
 void DenseCovariance::propagate(Index offset, std::span<const PlacedJacobian> wrt,
                                 const BlockMatrix& cov_noise) {
   const Index d = cov_noise.rows();

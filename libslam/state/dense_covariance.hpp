@@ -20,6 +20,7 @@ class DenseCovariance final : public CovarianceStore {
   std::unique_ptr<CovarianceStore> clone() const override;
   Eigen::Index dimension() const override { return n_; }
   void reserve(Eigen::Index dimension) override;
+  void assign(const MatrixRef& cov) override;
   void propagate(Eigen::Index offset, std::span<const PlacedJacobian> wrt,
                  const BlockMatrix& cov_noise) override;
   void add_noise(Eigen::Index offset, const BlockMatrix& cov_noise) override;

@@ -26,33 +26,32 @@ void append_rows(Rows& rows, Index first, Index count) {
   for (Index i = 0; i < count; ++i) rows.push_back(first == kOutside ? kOutside : first + i);
 }
 
-void require_fit(const MapStart& start, const MapBlocks& blocks, const GaussianState& state) {
+void require_fit(const MapStart& start, const MappedParts& parts) {
   const SavedMap& map = *start.map;
-  if (map.dimension != storage_dimension(blocks.landmark))
+  const int dimension = storage_dimension(parts.landmark);
+  if (map.dimension != dimension)
     reject("its landmarks have " + std::to_string(map.dimension) +
-           " coordinates, those of the measurement model " +
-           std::to_string(storage_dimension(blocks.landmark)));
+           " coordinates, those of the measurement model " + std::to_string(dimension));
   for (const SavedLandmark& landmark : map.landmarks)
     if (landmark.type != kPoint)
       reject("landmark " + std::to_string(landmark.id) + " is of type " + landmark.type);
-  const Index pose_size = state.estimate(blocks.pose).size();
-  if (start.pose && start.pose->size() != pose_size)
-    throw std::invalid_argument("the start pose has " + std::to_string(start.pose->size()) +
-                                " numbers, the pose of the filter " + std::to_string(pose_size));
-  if (!start.pose && map.pose.size() == 0)
+  if (!start.at_saved_pose) return;
+  if (map.pose.size() == 0)
     reject("it has no pose to start at; set map.start to given_pose, and map.initial_x, ...");
-  if (!start.pose && map.pose.size() != pose_size)
+  const Index size = parts.state.estimate(parts.pose).size();
+  if (map.pose.size() != size)
     reject("its last pose has " + std::to_string(map.pose.size()) + " numbers, that of the filter " +
-           std::to_string(pose_size));
+           std::to_string(size));
 }
 
 /// Estimates of pose and calibration; returns the rows of the map that describe them.
-Rows enter_robot(const MapStart& start, const MapBlocks& blocks, GaussianState& state) {
+Rows enter_robot(const MapStart& start, const MappedParts& parts) {
   const SavedMap& map = *start.map;
+  GaussianState& state = parts.state;
   Rows rows;
-  state.set_estimate(blocks.pose, start.pose ? *start.pose : map.pose);
-  append_rows(rows, start.pose ? kOutside : 0, state.size(blocks.pose));
-  for (const BlockId block : blocks.calibration) {
+  if (start.at_saved_pose) state.set_estimate(parts.pose, map.pose);
+  append_rows(rows, start.at_saved_pose ? 0 : kOutside, state.size(parts.pose));
+  for (const BlockId block : parts.calibration.blocks()) {
     const auto saved = std::find_if(
         map.calibration.begin(), map.calibration.end(),
         [&](const SavedCalibration& parameter) { return parameter.name == state.spec(block).name; });
@@ -63,8 +62,7 @@ Rows enter_robot(const MapStart& start, const MapBlocks& blocks, GaussianState& 
   return rows;
 }
 
-void enter_landmarks(const MapStart& start, const BlockSpec& spec, GaussianState& state,
-                     LandmarkRegistry& registry, Rows& rows) {
+void enter_landmarks(const MapStart& start, const MappedParts& parts, Rows& rows) {
   const SavedMap& map = *start.map;
   const Eigen::MatrixXd nothing = Eigen::MatrixXd::Zero(map.dimension, map.dimension);
   Index row = map.landmark_offset();
@@ -72,31 +70,32 @@ void enter_landmarks(const MapStart& start, const BlockSpec& spec, GaussianState
     const Index own = row;
     if (!landmark.exact) row += map.dimension;
     if (start.landmarks_given && !landmark.confirmed) continue;
-    const BlockId block = landmark.exact ? state.add_constant(spec, landmark.mean)
-                                         : state.add(spec, landmark.mean, nothing);
+    const BlockId block = landmark.exact ? parts.state.add_constant(parts.landmark, landmark.mean)
+                                         : parts.state.add(parts.landmark, landmark.mean, nothing);
     if (!landmark.exact) append_rows(rows, own, map.dimension);
-    registry.restore(
+    parts.registry.restore(
         {block, landmark.id, landmark.times_seen, landmark.updates, landmark.confirmed});
   }
-  registry.number_from(map.next_number);
+  parts.registry.number_from(map.next_number);
 }
 
-bool same_parameters(const SavedMap& map, const MapBlocks& blocks, const GaussianState& state) {
-  return std::equal(map.calibration.begin(), map.calibration.end(), blocks.calibration.begin(),
-                    blocks.calibration.end(), [&](const SavedCalibration& saved, BlockId block) {
-                      return saved.name == state.spec(block).name;
+bool same_parameters(const SavedMap& map, const MappedParts& parts) {
+  const CalibrationBlocks& blocks = parts.calibration.blocks();
+  return std::equal(map.calibration.begin(), map.calibration.end(), blocks.begin(), blocks.end(),
+                    [&](const SavedCalibration& saved, BlockId block) {
+                      return saved.name == parts.state.spec(block).name;
                     });
 }
 
 }  // namespace
 
-void enter_map(const MapStart& start, const MapBlocks& blocks, GaussianState& state,
-               LandmarkRegistry& registry, Excitation& excitation) {
-  require_fit(start, blocks, state);
+void enter_map(const MapStart& start, MappedParts parts) {
+  require_fit(start, parts);
   const SavedMap& map = *start.map;
+  GaussianState& state = parts.state;
   state.reserve(state.dimension() + map.tangent());
-  Rows rows = enter_robot(start, blocks, state);
-  enter_landmarks(start, blocks.landmark, state, registry, rows);
+  Rows rows = enter_robot(start, parts);
+  enter_landmarks(start, parts, rows);
   Eigen::MatrixXd cov = state.full_covariance();
   for (Index c = 0; c < cov.cols(); ++c)
     for (Index r = 0; r < cov.rows(); ++r) {
@@ -104,29 +103,27 @@ void enter_map(const MapStart& start, const MapBlocks& blocks, GaussianState& st
       if (row != kOutside && col != kOutside) cov(r, c) = map.cov(row, col);
     }
   state.covariance().assign(cov);
-  if (!start.pose && start.saved_calibration && !map.excitation.empty() &&
-      same_parameters(map, blocks, state))
-    excitation.remember(map.excitation);
+  if (start.at_saved_pose && start.saved_calibration && same_parameters(map, parts))
+    parts.calibration.remember(map.excitation);
 }
 
-SavedMap leave_map(const MapBlocks& blocks, const GaussianState& state,
-                   const LandmarkRegistry& registry, const Excitation& excitation) {
+SavedMap leave_map(const GaussianState& state, BlockId pose, const CalibrationStates& calibration,
+                   const LandmarkRegistry& registry, const BlockSpec& landmark) {
   SavedMap map;
-  map.dimension = storage_dimension(blocks.landmark);
-  map.pose = state.estimate(blocks.pose);
-  std::vector<BlockId> order{blocks.pose};
-  for (const BlockId block : blocks.calibration) {
+  map.dimension = storage_dimension(landmark);
+  map.pose = state.estimate(pose);
+  std::vector<BlockId> order{pose};
+  for (const BlockId block : calibration.blocks()) {
     map.calibration.push_back({state.spec(block).name, state.estimate(block)[0]});
     order.push_back(block);
   }
-  if (!map.calibration.empty()) map.excitation = excitation.memory();
+  map.excitation = calibration.memory();
   map.next_number = registry.next_number();
-  for (const RegisteredLandmark& landmark : registry.landmarks()) {
-    const bool exact = state.is_constant(landmark.block);
-    map.landmarks.push_back({landmark.id, kPoint, state.estimate(landmark.block),
-                             landmark.times_seen, landmark.updates, landmark.confirmed, exact,
-                             nullptr});
-    if (!exact) order.push_back(landmark.block);
+  for (const RegisteredLandmark& known : registry.landmarks()) {
+    const bool exact = state.is_constant(known.block);
+    map.landmarks.push_back({known.id, kPoint, state.estimate(known.block), known.times_seen,
+                             known.updates, known.confirmed, exact, nullptr});
+    if (!exact) order.push_back(known.block);
   }
   Rows rows;
   for (const BlockId block : order) append_rows(rows, state.offset(block), state.size(block));

@@ -19,7 +19,8 @@ EkfSlamParts checked(EkfSlamParts parts) {
     throw std::invalid_argument("EkfSlam linearizes displacements at the estimate");
   if (parts.map && (parts.displacement || parts.linearization))
     throw std::invalid_argument(
-        "EkfSlam starts in a map with a measurement model of landmarks, linearized at the estimate");
+        "EkfSlam starts in a map with a measurement model of landmarks, linearized at the "
+        "estimate");
   return parts;
 }
 
@@ -61,8 +62,8 @@ EkfSlam::EkfSlam(EkfSlamParts parts)
 }
 
 void EkfSlam::start_in_map() {
-  enter_map(*parts_.map, {state_, pose_, calibration_, parts_.registry,
-                          parts_.measurement->landmark_spec()});
+  enter_map(*parts_.map,
+            {state_, pose_, calibration_, parts_.registry, parts_.measurement->landmark_spec()});
   landmarks_given_ = parts_.map->landmarks_given;
   parts_.map.reset();
   if (!landmarks_given_) return;

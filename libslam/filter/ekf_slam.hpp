@@ -38,7 +38,7 @@ struct EkfSlamParts {
   std::unique_ptr<NoisePolicy> noise;  ///< null: R as the features bring it
   LandmarkRegistry registry{1, 0};
   std::optional<MapStart> map;  ///< to start in; needs no point of linearization but the estimate
-  BlockVector start;            ///< start pose, storage of the motion model's pose; empty: the origin
+  BlockVector start;  ///< start pose, storage of the motion model's pose; empty: the origin
   BlockMatrix cov_start = BlockMatrix::Zero(3, 3);        ///< of its error, tangent coordinates
   BlockMatrix cov_no_odometry = BlockMatrix::Zero(3, 3);  ///< added by a step without odometry
 };
@@ -55,8 +55,8 @@ struct UpdateOutcome {
 
 class EkfSlam {
  public:
-  /// Throws std::invalid_argument if a part is missing, the error frame does not support a block, or
-  /// the map to start in does not fit.
+  /// Throws std::invalid_argument if a part is missing, the error frame does not support a block,
+  /// or the map to start in does not fit.
   explicit EkfSlam(EkfSlamParts parts);
 
   /// Moves the robot; null: a step without odometry.
@@ -97,9 +97,9 @@ class EkfSlam {
   GaussianState state_;
   BlockId pose_;
   CalibrationStates calibration_;
-  std::vector<BlockId> considered_;   // the given landmarks, then calibration
-  std::size_t given_ = 0;             // how many of them are landmarks
-  bool landmarks_given_ = false;      // localization: no new landmarks
+  std::vector<BlockId> considered_;  // the given landmarks, then calibration
+  std::size_t given_ = 0;            // how many of them are landmarks
+  bool landmarks_given_ = false;     // localization: no new landmarks
   MotionStep step_;
   std::vector<Feature> adapted_;  // the features with the noise of the policy
   std::vector<Verdict> verdicts_;

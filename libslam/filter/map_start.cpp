@@ -40,8 +40,8 @@ void require_fit(const MapStart& start, const MappedParts& parts) {
     reject("it has no pose to start at; set map.start to given_pose, and map.initial_x, ...");
   const Index size = parts.state.estimate(parts.pose).size();
   if (map.pose.size() != size)
-    reject("its last pose has " + std::to_string(map.pose.size()) + " numbers, that of the filter " +
-           std::to_string(size));
+    reject("its last pose has " + std::to_string(map.pose.size()) +
+           " numbers, that of the filter " + std::to_string(size));
 }
 
 /// Estimates of pose and calibration; returns the rows of the map that describe them.
@@ -52,9 +52,10 @@ Rows enter_robot(const MapStart& start, const MappedParts& parts) {
   if (start.at_saved_pose) state.set_estimate(parts.pose, map.pose);
   append_rows(rows, start.at_saved_pose ? 0 : kOutside, state.size(parts.pose));
   for (const BlockId block : parts.calibration.blocks()) {
-    const auto saved = std::find_if(
-        map.calibration.begin(), map.calibration.end(),
-        [&](const SavedCalibration& parameter) { return parameter.name == state.spec(block).name; });
+    const auto saved = std::find_if(map.calibration.begin(), map.calibration.end(),
+                                    [&](const SavedCalibration& parameter) {
+                                      return parameter.name == state.spec(block).name;
+                                    });
     const bool taken = start.saved_calibration && saved != map.calibration.end();
     if (taken) state.set_estimate(block, Eigen::VectorXd::Constant(1, saved->mean));
     append_rows(rows, taken ? map.pose_tangent() + (saved - map.calibration.begin()) : kOutside, 1);

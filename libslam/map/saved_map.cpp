@@ -107,7 +107,8 @@ void check_saved_map(const SavedMap& map) {
   }
   if (map.cov.rows() != map.tangent() || map.cov.cols() != map.tangent())
     reject("the covariance is " + std::to_string(map.cov.rows()) + " x " +
-           std::to_string(map.cov.cols()) + ", expected " + std::to_string(map.tangent()) + " rows");
+           std::to_string(map.cov.cols()) + ", expected " + std::to_string(map.tangent()) +
+           " rows");
   check_covariance(map.cov);
 }
 

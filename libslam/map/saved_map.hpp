@@ -33,11 +33,11 @@ struct SavedCalibration {
   double mean = 0.0;  ///< in the unit of the parameter
 };
 
-/// One Gaussian over the last pose, the calibration and all landmarks. The covariance is that of the
-/// additive error of the means (libslam/state/block.hpp), whatever the error frame of the filter
-/// was. The cross-covariances between the landmarks are what makes the map better than its worst
-/// landmark; those with the calibration tell a run that goes on how much of an error of the map
-/// comes from the wheels; those with the pose matter to a run that starts where this one ended.
+/// One Gaussian over the last pose, the calibration and all landmarks. The covariance is that of
+/// the additive error of the means (libslam/state/block.hpp), whatever the error frame of the
+/// filter was. The cross-covariances between the landmarks are what makes the map better than its
+/// worst landmark; those with the calibration tell a run that goes on how much of an error of the
+/// map comes from the wheels; those with the pose matter to a run that starts where this one ended.
 struct SavedMap {
   int dimension = 2;  ///< of the landmarks: 2 or 3
   BlockVector pose;   ///< last pose: x, y, phi or x, y, z, qx, qy, qz, qw; empty: the map has none

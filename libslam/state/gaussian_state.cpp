@@ -77,8 +77,8 @@ BlockId GaussianState::append(const BlockSpec& spec, const VectorRef& estimate) 
   if (used_ + estimate.size() > storage_.size())
     storage_.conservativeResize(std::max<Index>(2 * storage_.size(), used_ + 16));
   const int index = free_slot();
-  slots_[static_cast<std::size_t>(index)] = {spec,  dimension_,      tangent_dimension(spec),
-                                             used_, estimate.size(), true, false};
+  slots_[static_cast<std::size_t>(index)] = {
+      spec, dimension_, tangent_dimension(spec), used_, estimate.size(), true, false};
   storage_.segment(used_, estimate.size()) = estimate;
   used_ += estimate.size();
   dimension_ += tangent_dimension(spec);

@@ -60,6 +60,10 @@ std::string place_in_ini(const std::string& section, const std::string& key) {
   return std::string("[").append(section).append("] ").append(key).append(": ");
 }
 
+bool is_parameter_section(const std::string& section) {
+  return section_of(section).has_value();
+}
+
 void load_parameters(const mrpt::config::CConfigFileBase& source, Parameters& parameters,
                      const ReservedParameter& reserved) {
   std::vector<std::string> sections, keys;

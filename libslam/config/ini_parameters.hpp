@@ -27,6 +27,9 @@ namespace libslam {
 /// "MRPT's option std_sensor_range; set it in [RangeBearingKFSLAM]"; nothing if it may.
 using ReservedParameter = std::function<std::optional<std::string>(std::string_view name)>;
 
+/// True for the sections above.
+bool is_parameter_section(const std::string& section);
+
 /// Writes what the sections above say over `parameters`; other sections are not read. Throws
 /// ConfigError naming section and key on a key that is unknown, has a bad value, stands under both
 /// names of its section, or is reserved.

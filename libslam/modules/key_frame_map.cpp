@@ -2,6 +2,7 @@
 #include <mrpt/poses/Lie/SO.h>
 
 #include <libslam/modules/key_frame_map.hpp>
+#include <libslam/modules/simple_map_carrier.hpp>
 
 namespace libslam {
 
@@ -33,7 +34,7 @@ void KeyFrameMap::insert(const mrpt::maps::CSimpleMap& earlier) {
   for (const auto& [pose, frame] : earlier) {
     mrpt::poses::CPose3DPDFGaussian gaussian;
     gaussian.copyFrom(*pose);
-    insert(gaussian, frame);
+    insert(gaussian, without_map(frame));
   }
 }
 

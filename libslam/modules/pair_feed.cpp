@@ -1,8 +1,31 @@
+#include <memory>
 #include <utility>
 
 #include <libslam/modules/pair_feed.hpp>
 
 namespace libslam {
+
+namespace {
+
+FilterStart start_in(SavedMap map) {
+  FilterStart start;
+  start.map.emplace().map = std::make_shared<const SavedMap>(std::move(map));
+  return start;
+}
+
+}  // namespace
+
+PairFeed::PairFeed(const Parameters& parameters, const std::string& entry_point, FilterStart start)
+    : intake_(entry_point, parameters.input.policy),
+      assembler_(intake_),
+      pipeline_(parameters, nullptr, std::move(start)),
+      last_(pipeline_.estimate()) {}
+
+PairFeed::PairFeed(const Parameters& parameters, const std::string& entry_point, ModuleState state)
+    : PairFeed(parameters, entry_point, start_in(std::move(state.map))) {
+  steps_ = state.steps;
+  assembler_.set_clock(state.clock);
+}
 
 const StepRecord& PairFeed::process(const mrpt::obs::CActionCollection::Ptr& action,
                                     const mrpt::obs::CSensoryFrame::Ptr& frame) {

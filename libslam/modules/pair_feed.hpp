@@ -8,6 +8,7 @@
 #include <libslam/data/step_record.hpp>
 #include <libslam/io/intake.hpp>
 #include <libslam/io/pair_assembler.hpp>
+#include <libslam/modules/module_state.hpp>
 #include <libslam/pipeline/pipeline.hpp>
 
 namespace libslam {
@@ -15,11 +16,10 @@ namespace libslam {
 class PairFeed {
  public:
   /// `entry_point`: what warnings call the source of the pairs.
-  PairFeed(const Parameters& parameters, const std::string& entry_point)
-      : intake_(entry_point, parameters.input.policy), assembler_(intake_), pipeline_(parameters) {
-    last_.pose = filter().state().estimate(filter().pose());
-    last_.cov = filter().state().covariance_of(filter().pose());
-  }
+  PairFeed(const Parameters& parameters, const std::string& entry_point, FilterStart start = {});
+  /// Goes on where state() was taken.
+  PairFeed(const Parameters& parameters, const std::string& entry_point, ModuleState state);
+  PairFeed(const PairFeed&) = delete;  // its parts refer to each other
 
   /// One step: odometry of `action`, if it has any, then what `frame` shows. Either may be null.
   /// Once there is a map, a step without odometry may have moved the robot unseen. Throws
@@ -36,6 +36,9 @@ class PairFeed {
   std::int64_t steps() const { return steps_; }
   const Pipeline& pipeline() const { return pipeline_; }
   const EkfSlam& filter() const { return pipeline_.filter(); }
+  ModuleState state() const { return {filter().saved_map(), steps_, assembler_.clock()}; }
+  /// Localization from now on, or SLAM: EkfSlam::give_landmarks.
+  void give_landmarks(bool given) { pipeline_.give_landmarks(given); }
   /// Findings about the input since the last call.
   std::span<const std::string> take_warnings();
 

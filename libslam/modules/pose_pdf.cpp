@@ -1,23 +1,13 @@
 #include <Eigen/Dense>  // before any use of asEigen()
 
 #include <libslam/modules/pose_pdf.hpp>
+#include <libslam/modules/start_pose.hpp>
 
 namespace libslam {
 
 namespace {
 
 using mrpt::poses::CPose3D;
-
-SpatialEstimate spatial_of(const StepRecord& record) {
-  if (record.spatial) return *record.spatial;
-  SpatialEstimate estimate;
-  estimate.pose.position.head<2>() = record.pose.head<2>();
-  estimate.pose.rotation = Eigen::AngleAxisd(record.pose[2], Eigen::Vector3d::UnitZ());
-  constexpr int kPlanar[] = {0, 1, 5};  // of position and rotation vector
-  for (int r = 0; r < 3; ++r)
-    for (int c = 0; c < 3; ++c) estimate.cov(kPlanar[r], kPlanar[c]) = record.cov(r, c);
-  return estimate;
-}
 
 /// d(yaw, pitch, roll) by a small rotation about the axes of the world, R <- Exp(d) R: the inverse
 /// of its columns Rz Ry e_x, Rz e_y, e_z for roll, pitch, yaw.
@@ -63,7 +53,7 @@ mrpt::poses::CPose3DPDFGaussian to_pose_pdf(const StepRecord& record) {
 }
 
 mrpt::poses::CPose3DQuatPDFGaussian to_quaternion_pdf(const StepRecord& record) {
-  const SpatialEstimate estimate = spatial_of(record);
+  const SpatialEstimate estimate = spatial_estimate(record);
   const Eigen::Quaterniond& q = estimate.pose.rotation;
   const Eigen::Vector3d& p = estimate.pose.position;
   mrpt::poses::CPose3DQuatPDFGaussian pdf;

@@ -126,6 +126,15 @@ void RangeBearingSlam2D::getCurrentState(mrpt::poses::CPosePDFGaussian& out_robo
   out_fullCovariance.asEigen() = filter.state().full_covariance()(coordinates, coordinates);
 }
 
+void RangeBearingSlam2D::saveState(mrpt::serialization::CArchive& out) const {
+  write_state(out, impl_->feed.state());
+}
+
+void RangeBearingSlam2D::loadState(mrpt::serialization::CArchive& in) {
+  impl_ = std::make_unique<Impl>(options.getEffectiveParameters(), read_state(in));
+  association_ = {};
+}
+
 std::vector<CalibrationValue> RangeBearingSlam2D::getCurrentCalibration() const {
   return impl_->filter().calibration();
 }

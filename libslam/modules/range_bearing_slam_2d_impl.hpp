@@ -1,6 +1,7 @@
 #pragma once
 // What RangeBearingSlam2D holds; not for users.
 
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -11,7 +12,10 @@
 namespace libslam {
 
 struct RangeBearingSlam2D::Impl {
-  explicit Impl(const Parameters& parameters) : feed(parameters, "processActionObservation") {}
+  explicit Impl(const Parameters& parameters) : feed(parameters, kEntryPoint) {}
+  Impl(const Parameters& parameters, ModuleState state)
+      : feed(parameters, kEntryPoint, std::move(state)) {}
+  static constexpr const char* kEntryPoint = "processActionObservation";
 
   const EkfSlam& filter() const { return feed.filter(); }
   Eigen::Vector3d pose() const { return filter().state().estimate(filter().pose()); }

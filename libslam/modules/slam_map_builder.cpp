@@ -1,20 +1,28 @@
 #include <algorithm>
+#include <exception>
+#include <memory>
+#include <optional>
 #include <utility>
 
 #include <Eigen/Dense>  // before any use of asEigen()
-#include <mrpt/poses/CPosePDFGaussian.h>
+#include <mrpt/serialization/CArchive.h>
 
 #include <libslam/config/config_error.hpp>
 #include <libslam/config/validation.hpp>
+#include <libslam/io/input_error.hpp>
 #include <libslam/modules/pose_pdf.hpp>
+#include <libslam/modules/simple_map_carrier.hpp>
 #include <libslam/modules/slam_map_builder.hpp>
 #include <libslam/modules/slam_map_builder_impl.hpp>
+#include <libslam/modules/start_pose.hpp>
+#include <libslam/pipeline/factory.hpp>
 
 namespace libslam {
 
 SlamMapBuilder::SlamMapBuilder() {
   setLoggerName("SlamMapBuilder");
   start({}, nullptr);
+  impl_->fresh = true;
 }
 
 SlamMapBuilder::~SlamMapBuilder() = default;
@@ -26,10 +34,27 @@ void SlamMapBuilder::initialize(const mrpt::maps::CSimpleMap& initialMap,
 }
 
 void SlamMapBuilder::start(const mrpt::maps::CSimpleMap& map, const mrpt::poses::CPosePDF* x0) {
-  validate(slam_options.parameters);
-  (void)x0;
-  impl_ = std::make_unique<Impl>(slam_options);
-  impl_->maps.insert(map);
+  const Parameters& p = slam_options.parameters;
+  validate(p);
+  if (p.measurement.model == "sensor_displacement")
+    throw ConfigError("measurement.model: a map builder needs landmarks, not displacements");
+  const bool spatial =
+      make_motion_model(p.motion, p.calibration, p.input)->pose_spec().chart == Chart::kSE3;
+  FilterStart start;
+  if (x0 != nullptr)
+    start = start_at(*x0, spatial);
+  else if (impl_ && !impl_->fresh)
+    start = start_at(impl_->feed.last(), spatial);
+  std::optional<SavedMap> landmarks = attached_map(map);
+  if (!landmarks && !map.empty() && !spatial) landmarks = map_of_frames(map, p);
+  if (landmarks) {
+    start.map.emplace().map = std::make_shared<const SavedMap>(std::move(*landmarks));
+    start.map->at_saved_pose = false;
+  }
+  auto fresh = std::make_unique<Impl>(slam_options, std::move(start));
+  fresh->maps.insert(map);
+  fresh->landmarks_shown = false;
+  impl_ = std::move(fresh);
 }
 
 void SlamMapBuilder::processActionObservation(mrpt::obs::CActionCollection& action,
@@ -38,8 +63,15 @@ void SlamMapBuilder::processActionObservation(mrpt::obs::CActionCollection& acti
   const auto own_action = mrpt::obs::CActionCollection::Create(action);
   const auto own_frame = mrpt::obs::CSensoryFrame::Create(observations);
   const std::lock_guard lock(critical_);
-  if (impl_->feed.steps() == 0 && impl_->maps.key_frames().empty()) start({}, nullptr);
+  if (impl_->fresh) start({}, nullptr);  // with the options as they are now
+  hold_map_on_demand();
   process(own_action, own_frame);
+}
+
+void SlamMapBuilder::hold_map_on_demand() {
+  const MapParameters& map = slam_options.parameters.map;
+  const bool given = !options.enableMapUpdating || (!map.file.empty() && map.mode == "localize");
+  if (std::exchange(impl_->map_given, given) != given) impl_->feed.give_landmarks(given);
 }
 
 void SlamMapBuilder::process(const mrpt::obs::CActionCollection::Ptr& action,
@@ -85,6 +117,31 @@ mrpt::poses::CPose3DPDF::Ptr SlamMapBuilder::getCurrentPoseEstimation() const {
 void SlamMapBuilder::getCurrentlyBuiltMap(mrpt::maps::CSimpleMap& out_map) const {
   const std::lock_guard lock(critical_);
   out_map = impl_->maps.key_frames();
+  const EkfSlam& filter = impl_->feed.filter();
+  if (!out_map.empty() && filter.registry().size() > 0 && filter.healthy())
+    attach_map(filter.saved_map(), out_map);
+}
+
+void SlamMapBuilder::saveState(mrpt::serialization::CArchive& out) const {
+  const std::lock_guard lock(critical_);
+  write_state(out, impl_->feed.state());
+  out << impl_->maps.key_frames();
+}
+
+void SlamMapBuilder::loadState(mrpt::serialization::CArchive& in) {
+  const std::lock_guard lock(critical_);
+  ModuleState state = read_state(in);
+  mrpt::maps::CSimpleMap key_frames;
+  try {
+    in >> key_frames;
+  } catch (const std::exception&) {  // MRPT's own has a page of text
+    throw InputError("saved state: its key frames cannot be read");
+  }
+  validate(slam_options.parameters);
+  auto loaded = std::make_unique<Impl>(slam_options, std::move(state));
+  loaded->maps.insert(key_frames);
+  loaded->landmarks_shown = false;
+  impl_ = std::move(loaded);
 }
 
 unsigned int SlamMapBuilder::getCurrentlyBuiltMapSize() {

@@ -24,6 +24,10 @@
 
 #include <libslam/config/parameters.hpp>
 
+namespace mrpt::serialization {
+class CArchive;
+}
+
 namespace libslam {
 
 struct CalibrationValue;  // libslam/data/step_record.hpp
@@ -58,8 +62,11 @@ class SlamMapBuilder final : public mrpt::slam::CMetricMapBuilder {
   void loadOptions(const mrpt::config::CConfigFileBase& ini,
                    const std::string& section = "MappingApplication");
 
-  /// Starts anew, in the frame of `initialMap`. `x0`: null leaves the pose as it is. Throws
-  /// ConfigError if the options cannot run.
+  /// Starts anew at `x0`, in the frame of `initialMap`; null: the pose stays as it is. Landmarks
+  /// come from a map that this class wrote, with their covariance; from another map they are what
+  /// the front-end sees in its frames, from poses that count as exact (in space there are none
+  /// then). Throws ConfigError if the options cannot run, InputError (io/input_error.hpp) if the
+  /// landmarks in the map are damaged, and std::invalid_argument if they do not fit the filter.
   void initialize(const mrpt::maps::CSimpleMap& initialMap = mrpt::maps::CSimpleMap(),
                   const mrpt::poses::CPosePDF* x0 = nullptr) override;
 
@@ -72,7 +79,8 @@ class SlamMapBuilder final : public mrpt::slam::CMetricMapBuilder {
   void processActionObservation(mrpt::obs::CActionCollection& action,
                                 mrpt::obs::CSensoryFrame& observations) override;
 
-  /// Key frames with their poses.
+  /// Key frames with their poses. The last one also carries the landmarks, as an observation that
+  /// other programs pass over: saveCurrentMapToFile() loses nothing of the map.
   void getCurrentlyBuiltMap(mrpt::maps::CSimpleMap& out_map) const override;
   /// Number of key frames.
   unsigned int getCurrentlyBuiltMapSize() override;
@@ -81,6 +89,14 @@ class SlamMapBuilder final : public mrpt::slam::CMetricMapBuilder {
   /// in which format, the second argument is ignored. Throws std::runtime_error if it cannot be
   /// written.
   void saveCurrentEstimationToImage(const std::string& file, bool formatEMF_BMP = true) override;
+
+  /// Everything that the next pair depends on, and the key frames: what runs on after loadState(),
+  /// with the same options, gives the results of a run without a break. What policies learned and
+  /// the phase of an update schedule start anew. saveState() throws std::invalid_argument if the
+  /// filter has diverged; loadState() throws InputError on anything that is no saved state, or is
+  /// damaged or cut off, and then changes nothing.
+  void saveState(mrpt::serialization::CArchive& out) const;
+  void loadState(mrpt::serialization::CArchive& in);
 
   /// The calibration parameters that `slam_options.parameters.calibration` enables.
   std::vector<CalibrationValue> getCurrentCalibration() const;
@@ -93,6 +109,7 @@ class SlamMapBuilder final : public mrpt::slam::CMetricMapBuilder {
   void process(const mrpt::obs::CActionCollection::Ptr& action,
                const mrpt::obs::CSensoryFrame::Ptr& frame);
   bool is_key_frame(const mrpt::obs::CSensoryFrame& frame) const;
+  void hold_map_on_demand();
   void report_step();
 
   std::mutex& critical_ = critZoneChangingMap;  // the same for const methods

@@ -1,4 +1,5 @@
 #include <optional>
+#include <utility>
 
 #include <libslam/pipeline/factory.hpp>
 #include <libslam/pipeline/pipeline.hpp>
@@ -12,14 +13,24 @@ InputParameters reader_input(InputParameters input) {
   return input;
 }
 
+EkfSlamParts make_parts(const Parameters& parameters, const TrueState* truth, FilterStart start) {
+  EkfSlamParts parts = make_filter_parts(parameters, truth);
+  if (start.map) parts.map = std::move(start.map);
+  if (start.pose.size() > 0) {
+    parts.start = start.pose;
+    parts.cov_start = start.cov;
+  }
+  return parts;
+}
+
 }  // namespace
 
-Pipeline::Pipeline(const Parameters& parameters, const TrueState* truth)
+Pipeline::Pipeline(const Parameters& parameters, const TrueState* truth, FilterStart start)
     : odometry_(reader_input(parameters.input)),
       ignore_odometry_(parameters.input.odometry == "none"),
       frontend_(make_frontend(parameters)),
       schedule_(parameters.policies.update_period_s, parameters.policies.update_every_n),
-      filter_(make_filter_parts(parameters, truth)) {}
+      filter_(make_parts(parameters, truth, std::move(start))) {}
 
 StepRecord Pipeline::process(const LogStep& step) {
   std::optional<MotionAction> action;
@@ -52,17 +63,22 @@ StepRecord Pipeline::update(const LogStep& step) {
         last_update_ += outcome;
       }
   }
-  StepRecord record;
+  StepRecord record = estimate();
   record.index = step.index;
   record.time = step.time;
-  record.pose = filter_.state().estimate(filter_.pose());
-  record.cov = filter_.state().covariance_of(filter_.pose());
   record.nis = last_update_.nis;
   record.nis_dof = last_update_.nis_dof;
   record.accepted = last_update_.accepted;
   record.gated = last_update_.gated;
   record.ambiguous = last_update_.ambiguous;
   record.new_landmarks = last_update_.new_landmarks;
+  return record;
+}
+
+StepRecord Pipeline::estimate() const {
+  StepRecord record;
+  record.pose = filter_.state().estimate(filter_.pose());
+  record.cov = filter_.state().covariance_of(filter_.pose());
   record.calibration = filter_.calibration();
   return record;
 }

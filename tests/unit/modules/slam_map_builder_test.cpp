@@ -19,60 +19,25 @@
 #include <mrpt/slam/CMetricMapBuilderICP.h>
 
 #include <libslam/data/step_record.hpp>
-#include <libslam/io/rawlog_player.hpp>
 #include <libslam/modules/slam_map_builder.hpp>
 #include <libslam/pipeline/pipeline.hpp>
 
+#include "map_builder_run.hpp"
 #include "support/config_error_message.hpp"
 #include "support/temporary_directory.hpp"
 
 namespace libslam {
 namespace {
 
-using mrpt::poses::CPose3DPDFGaussian;
 using mrpt::slam::CMetricMapBuilder;
+using test::demo_parameters;
+using test::kDemo;
+using test::pose_of;
+using test::read_log;
+using test::run;
 
-const std::string kDemo = "/usr/share/mrpt/datasets/kf-slam_demo.rawlog";
 const std::string kLaserLog =
     "/usr/share/mrpt/datasets/2006-01ENE-21-SENA_Telecom Faculty_one_loop_only.rawlog";
-
-std::vector<LogStep> read_log(const std::string& file, std::size_t count = 100000) {
-  RawlogPlayer player(file);
-  std::vector<LogStep> steps;
-  while (steps.size() < count) {
-    auto step = player.next();
-    if (!step) break;
-    if (step->frame) steps.push_back(std::move(*step));
-  }
-  return steps;
-}
-
-CPose3DPDFGaussian pose_of(const CMetricMapBuilder& builder) {
-  CPose3DPDFGaussian pose;
-  pose.copyFrom(*builder.getCurrentPoseEstimation());
-  return pose;
-}
-
-/// What a program does that takes a map builder.
-std::vector<CPose3DPDFGaussian> run(CMetricMapBuilder& builder, const std::vector<LogStep>& steps) {
-  std::vector<CPose3DPDFGaussian> path;
-  for (const LogStep& step : steps) {
-    mrpt::obs::CActionCollection action;
-    if (step.action) action = *step.action;
-    builder.processActionObservation(action, *step.frame);
-    path.push_back(pose_of(builder));
-  }
-  return path;
-}
-
-/// The demo's sensor as its simulator had it.
-Parameters demo_parameters() {
-  Parameters p;
-  p.measurement.noise = "configured";
-  p.measurement.sigma_range = 0.03;
-  p.measurement.sigma_bearing_deg = 0.1;
-  return p;
-}
 
 class DemoMap : public ::testing::Test {
  protected:

@@ -5,9 +5,13 @@
 #include <libslam/association/nearest_neighbour.hpp>
 #include <libslam/frontend/range_bearing_observation.hpp>
 #include <libslam/frontend/sensor_path_observation.hpp>
+#include <libslam/frontend/stereo_observation.hpp>
 #include <libslam/measurement/range_bearing.hpp>
 #include <libslam/measurement/sensor_displacement.hpp>
+#include <libslam/measurement/stereo_point.hpp>
 #include <libslam/motion/ackermann.hpp>
+#include <libslam/motion/body_twist.hpp>
+#include <libslam/motion/constant_twist.hpp>
 #include <libslam/motion/differential.hpp>
 #include <libslam/motion/odometry_increment.hpp>
 #include <libslam/pipeline/factory.hpp>
@@ -26,6 +30,8 @@ constexpr std::int64_t kBeyondIdentities = std::int64_t{1} << 32;
 
 std::unique_ptr<MeasurementModel> make_measurement(const Parameters& p) {
   if (p.measurement.model == "range_bearing") return std::make_unique<RangeBearing>();
+  if (p.measurement.model == "stereo_point")
+    return std::make_unique<StereoPoint>(p.measurement.stereo.landmark_dimension);
   throw_unknown("measurement model", p.measurement.model);
 }
 
@@ -53,8 +59,11 @@ std::unique_ptr<LinearizationPoint> make_linearization_point(const Parameters& p
   return std::make_unique<TruthPoint>(*truth);
 }
 
-Eigen::Matrix3d planar_covariance(double sigma_xy, double sigma_heading_deg) {
-  const Eigen::Vector3d sigma(sigma_xy, sigma_xy, sigma_heading_deg * kPi / 180.0);
+/// Of a pose error in the plane, or in space with the same sigmas for every axis.
+BlockMatrix pose_covariance(const BlockSpec& pose, double sigma_xy, double sigma_heading_deg) {
+  TangentVector sigma(tangent_dimension(pose));
+  sigma.setConstant(sigma_heading_deg * kPi / 180.0);
+  sigma.head(pose.chart == Chart::kSE3 ? 3 : 2).setConstant(sigma_xy);
   return sigma.cwiseAbs2().asDiagonal();
 }
 
@@ -63,6 +72,9 @@ Eigen::Matrix3d planar_covariance(double sigma_xy, double sigma_heading_deg) {
 std::unique_ptr<MotionModel> make_motion_model(const MotionParameters& motion,
                                                const CalibrationParameters& calibration,
                                                const InputParameters& input) {
+  if (motion.model == "body_twist") return std::make_unique<BodyTwist>(motion.twist, calibration);
+  if (motion.model == "constant_twist")
+    return std::make_unique<ConstantTwist>(motion.constant_twist);
   const OdometrySource source =
       input.odometry == "none" ? OdometrySource::kIncrements : odometry_source(input);
   if (motion.model == "odometry_increment")
@@ -88,10 +100,11 @@ EkfSlamParts make_filter_parts(const Parameters& p, const TrueState* truth) {
   parts.registry =
       LandmarkRegistry(p.association.confirm_after, p.association.prune_after,
                        p.association.method == "known_or_nearest" ? kBeyondIdentities : 0);
+  const BlockSpec pose = parts.motion->pose_spec();
   parts.cov_start =
-      planar_covariance(p.filter.initial_sigma_xy, p.filter.initial_sigma_heading_deg);
+      pose_covariance(pose, p.filter.initial_sigma_xy, p.filter.initial_sigma_heading_deg);
   parts.cov_no_odometry =
-      planar_covariance(p.motion.no_odometry_sigma_xy, p.motion.no_odometry_sigma_heading_deg);
+      pose_covariance(pose, p.motion.no_odometry_sigma_xy, p.motion.no_odometry_sigma_heading_deg);
   return parts;
 }
 
@@ -102,6 +115,10 @@ std::unique_ptr<Frontend> make_frontend(const Parameters& p) {
                                                      p.association.method != "nearest_neighbour");
   if (p.frontend.source == "sensor_path")
     return std::make_unique<SensorPathObservation>(p.measurement, p.input.sensor_label);
+  if (p.frontend.source == "stereo_points")
+    return std::make_unique<StereoObservation>(p.frontend, p.measurement.stereo,
+                                               p.input.sensor_label,
+                                               p.association.method != "nearest_neighbour");
   throw_unknown("front-end", p.frontend.source);
 }
 

@@ -61,6 +61,13 @@ void append_tum_row(std::string& text, double time, const Eigen::Vector3d& pose)
   text += '\n';
 }
 
+void append_tum_row(std::string& text, double time, const SpatialPose& pose) {
+  append_time(text, time);
+  for (const double value : pose.position) append_decimal(text, value);
+  for (const double value : pose.rotation.coeffs()) append_decimal(text, value);
+  text += '\n';
+}
+
 TrajectoryReader::TrajectoryReader(const std::filesystem::path& file)
     : name_(file.string()), in_(file) {
   if (!in_) throw std::runtime_error("cannot open " + name_);

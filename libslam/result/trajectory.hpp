@@ -19,8 +19,9 @@ void append_trajectory_header(std::string& text, const std::vector<CalibrationVa
 /// One row of trajectory.csv; numbers read back bit for bit, the time to a nanosecond.
 void append_trajectory_row(std::string& text, const StepRecord& step);
 
-/// One TUM line `t x y z qx qy qz qw` of a planar pose: 9 decimals, fixed notation.
+/// One TUM line `t x y z qx qy qz qw`: 9 decimals, fixed notation.
 void append_tum_row(std::string& text, double time, const Eigen::Vector3d& pose);
+void append_tum_row(std::string& text, double time, const SpatialPose& pose);
 
 /// Streams trajectory.csv. A last line without line end, as a killed run may leave, is not read.
 class TrajectoryReader {

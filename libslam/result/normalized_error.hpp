@@ -5,6 +5,8 @@
 
 #include <Eigen/Dense>
 
+#include <libslam/state/chi_square.hpp>
+
 namespace libslam {
 
 /// Smallest eigenvalue of a correlation matrix that is more than the rounding of its entries, with
@@ -25,6 +27,11 @@ double normalized_square(const Eigen::Matrix<double, N, 1>& e,
   return spectrum.eigenvalues()[0] > kSingularCorrelation
              ? along.cwiseAbs2().cwiseQuotient(spectrum.eigenvalues()).sum()
              : std::numeric_limits<double>::quiet_NaN();
+}
+
+/// What half of the values of a consistent filter with `dof` degrees of freedom stay below.
+inline double median_normalized_square(int dof) {
+  return chi_square_quantile(0.5, dof);
 }
 
 }  // namespace libslam

@@ -5,9 +5,9 @@
 #include <optional>
 #include <vector>
 
+#include <libslam/result/normalized_error.hpp>
 #include <libslam/result/report_figures.hpp>
 #include <libslam/result/report_html.hpp>
-#include <libslam/state/chi_square.hpp>
 
 namespace libslam {
 namespace {
@@ -126,7 +126,7 @@ std::string consistency_card(const RunSummary& s) {
     const NeesSummary& nees = *s.truth->nees;
     char median[48];
     std::snprintf(median, sizeof median, "NEES median (ideal %.3g)",
-                  chi_square_quantile(0.5, nees.dof));
+                  median_normalized_square(nees.dof));
     card.row(("NEES mean (ideal " + std::to_string(nees.dof) + ")").c_str(), nees.mean)
         .row(median, nees.median);
     card.row("NEES in 95 %", nees.in_95, "%", 100.0);

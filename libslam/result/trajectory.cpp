@@ -190,6 +190,16 @@ bool TrajectoryReader::next(StepRecord& step) {
   return true;
 }
 
+Trajectory trajectory_of(const PathView& path) {
+  Trajectory trajectory;
+  for (const EstimatedPose& step : path.poses) {
+    trajectory.times.push_back(step.time);
+    trajectory.poses.push_back(step.pose);
+  }
+  for (const SpatialEstimate& step : path.spatial) trajectory.spatial.push_back(step.pose);
+  return trajectory;
+}
+
 EstimatedPath read_path(const std::filesystem::path& file) {
   EstimatedPath path;
   TrajectoryReader reader(file);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <libslam/data/step_record.hpp>
+#include <libslam/data/trajectory.hpp>
 
 namespace libslam {
 
@@ -89,6 +90,9 @@ struct PathView {
   std::span<const EstimatedPose> poses;
   std::span<const SpatialEstimate> spatial;
 };
+
+/// The path without covariances.
+Trajectory trajectory_of(const PathView& path);
 
 /// All rows of a trajectory.csv. Throws like TrajectoryReader.
 EstimatedPath read_path(const std::filesystem::path& file);

@@ -1,11 +1,14 @@
 #include <stdexcept>
 #include <string>
 
+#include <Eigen/Geometry>
+
 #include <libslam/association/known.hpp>
 #include <libslam/association/nearest_neighbour.hpp>
 #include <libslam/frontend/range_bearing_observation.hpp>
 #include <libslam/frontend/sensor_path_observation.hpp>
 #include <libslam/frontend/stereo_observation.hpp>
+#include <libslam/io/map_file.hpp>
 #include <libslam/measurement/range_bearing.hpp>
 #include <libslam/measurement/sensor_displacement.hpp>
 #include <libslam/measurement/stereo_point.hpp>
@@ -67,6 +70,29 @@ BlockMatrix pose_covariance(const BlockSpec& pose, double sigma_xy, double sigma
   return sigma.cwiseAbs2().asDiagonal();
 }
 
+BlockVector start_pose(const BlockSpec& pose, const MapParameters& map) {
+  constexpr double kDegree = kPi / 180.0;
+  if (pose.chart == Chart::kSE2)
+    return Eigen::Vector3d(map.initial_x, map.initial_y, map.initial_heading_deg * kDegree);
+  const Eigen::Quaterniond q =
+      Eigen::AngleAxisd(map.initial_heading_deg * kDegree, Eigen::Vector3d::UnitZ()) *
+      Eigen::AngleAxisd(map.initial_pitch_deg * kDegree, Eigen::Vector3d::UnitY()) *
+      Eigen::AngleAxisd(map.initial_roll_deg * kDegree, Eigen::Vector3d::UnitX());
+  BlockVector start(storage_dimension(pose));
+  start << map.initial_x, map.initial_y, map.initial_z, q.coeffs();
+  return start;
+}
+
+std::optional<MapStart> make_map_start(const MapParameters& map) {
+  if (map.file.empty()) return std::nullopt;
+  MapStart start;
+  start.map = std::make_shared<SavedMap>(read_map_file(map.file, map.sigma));
+  start.landmarks_given = map.mode == "localize";
+  start.at_saved_pose = map.start == "saved_pose";
+  start.saved_calibration = map.calibration == "saved";
+  return start;
+}
+
 }  // namespace
 
 std::unique_ptr<MotionModel> make_motion_model(const MotionParameters& motion,
@@ -101,6 +127,8 @@ EkfSlamParts make_filter_parts(const Parameters& p, const TrueState* truth) {
       LandmarkRegistry(p.association.confirm_after, p.association.prune_after,
                        p.association.method == "known_or_nearest" ? kBeyondIdentities : 0);
   const BlockSpec pose = parts.motion->pose_spec();
+  parts.map = make_map_start(p.map);
+  if (parts.map && !parts.map->at_saved_pose) parts.start = start_pose(pose, p.map);
   parts.cov_start =
       pose_covariance(pose, p.filter.initial_sigma_xy, p.filter.initial_sigma_heading_deg);
   parts.cov_no_odometry =

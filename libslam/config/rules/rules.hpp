@@ -18,6 +18,7 @@ void check_displacement(const Parameters& p, Conflicts& conflicts);
 void check_spatial(const Parameters& p, Conflicts& conflicts);
 void check_association(const Parameters& p, Conflicts& conflicts);
 void check_filter(const Parameters& p, TruthAccess truth, Conflicts& conflicts);
+void check_map(const Parameters& p, Conflicts& conflicts);
 void check_policies(const Parameters& p, Conflicts& conflicts);
 
 }  // namespace libslam

@@ -94,8 +94,9 @@ EvaluatedRun evaluate_run(const fs::path& directory, const Arguments& arguments,
   run.summary.truth = compare_with_truth(recorded, truth, identity_of(directory), arguments.window,
                                          placement_of(arguments));
   if (!truth.path.poses.empty() && !run.summary.truth->path)
-    warning = directory.string() + ": no pose of the run, or of the part of it that was asked for, "
-                                   "is near a true one in time";
+    warning = directory.string() +
+              ": no pose of the run, or of the part of it that was asked for, "
+              "is near a true one in time";
   return run;
 }
 

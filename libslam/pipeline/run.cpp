@@ -108,10 +108,8 @@ class Run {
   }
 
   void write_mrpt_files(const LandmarkMap& map) const {
-    std::vector<Eigen::Vector3d> path;
-    for (const auto& step : read_estimated_path(request_.directory / "trajectory.csv"))
-      path.push_back(step.pose);
-    write_scene_3d(request_.directory / "scene.3Dscene", path, map);
+    write_scene_3d(request_.directory / "scene.3Dscene",
+                   trajectory_of(read_path(request_.directory / "trajectory.csv")), map);
     simple_map_.write(request_.directory / "map.simplemap");
   }
 
@@ -147,8 +145,15 @@ class Run {
     any_used_ = any_used_ || record.accepted > 0 || record.new_landmarks > 0;
     unused_sightings_ += record.ambiguous + record.gated;
     recorder_.record(record);
-    if (request_.parameters.output.mrpt_files) simple_map_.add(record.pose, record.cov, step.frame);
+    if (request_.parameters.output.mrpt_files) keep_frame(record, step.frame);
     if (request_.on_step) request_.on_step(player_.progress(), record);
+  }
+
+  void keep_frame(const StepRecord& record, const mrpt::obs::CSensoryFrame::Ptr& frame) {
+    if (record.spatial)
+      simple_map_.add(*record.spatial, frame);
+    else
+      simple_map_.add(record.pose, record.cov, frame);
   }
 
   RunSummary summarize() {

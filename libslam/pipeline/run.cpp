@@ -187,9 +187,16 @@ class Run {
     summary.threads = request_.threads;
     summary.exit_code = exit_code_;
     summary.status = status_;
-    summary.input = {request_.rawlog,    input.entries,    input.actions,
-                     input.observations, input.duration_s, input.skipped + unusable,
-                     input.repaired,     input.warnings};
+    summary.input = {request_.rawlog,
+                     input.entries,
+                     input.actions,
+                     input.observations,
+                     input.duration_s,
+                     input.skipped + unusable,
+                     input.repaired,
+                     input.warnings,
+                     {},
+                     {}};
     if (const std::string& map = request_.parameters.map.file; !map.empty()) {
       summary.input.map_file = map;
       summary.input.map_sha256 = sha256_of_file(map);

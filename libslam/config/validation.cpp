@@ -28,6 +28,7 @@ std::vector<Conflict> find_conflicts(const Parameters& parameters, TruthAccess t
   check_association(parameters, conflicts);
   check_filter(parameters, truth, conflicts);
   check_policies(parameters, conflicts);
+  check_map(parameters, conflicts);
   return conflicts;
 }
 

@@ -69,7 +69,8 @@ Index Ekf::stack(const GaussianState& state, std::span<const LinearizedMeasureme
                                   std::to_string(measurement.cov.rows()) + " x " +
                                   std::to_string(measurement.cov.cols()) + " covariance");
     const std::size_t first = placed_.size();
-    for (const auto& column : measurement.wrt) placed_.push_back(place(state, column, rows));
+    for (const auto& column : measurement.wrt)
+      if (!state.is_constant(column.block)) placed_.push_back(place(state, column, rows));
     rows_.push_back({row, rows, std::span(placed_.data() + first, placed_.size() - first)});
     nu_.segment(row, rows) = measurement.innovation;
     row += rows;

@@ -51,7 +51,8 @@ class Ekf {
   Innovation innovate(const GaussianState& state, const LinearizedMeasurement& measurement);
 
   /// Joint update with all measurements stacked. `pose` is the reference pose of the error frame.
-  /// Blocks in `considered` keep estimate and covariance, but their uncertainty counts.
+  /// Blocks in `considered` keep estimate and covariance, but their uncertainty counts. Derivatives
+  /// with respect to constants of the state are left out.
   Correction correct(GaussianState& state, BlockId pose,
                      std::span<const LinearizedMeasurement> measurements,
                      std::span<const BlockId> considered = {});

@@ -17,6 +17,10 @@ EkfSlamParts checked(EkfSlamParts parts) {
         "EkfSlam needs a measurement model and an associator, or a displacement model");
   if (parts.displacement && parts.linearization)
     throw std::invalid_argument("EkfSlam linearizes displacements at the estimate");
+  if (parts.map && (parts.displacement || parts.linearization))
+    throw std::invalid_argument(
+        "EkfSlam starts in a map with a measurement model of landmarks, linearized at the "
+        "estimate");
   return parts;
 }
 
@@ -54,6 +58,32 @@ EkfSlam::EkfSlam(EkfSlamParts parts)
       state_.add(pose, parts_.start.size() > 0 ? parts_.start : origin_of(pose), parts_.cov_start);
   linearizer_.add_block(state_, pose_);
   calibration_.add_to(state_, linearizer_);
+  if (parts_.map) start_in_map();
+}
+
+void EkfSlam::start_in_map() {
+  enter_map(*parts_.map,
+            {state_, pose_, calibration_, parts_.registry, parts_.measurement->landmark_spec()});
+  landmarks_given_ = parts_.map->landmarks_given;
+  parts_.map.reset();
+  if (!landmarks_given_) return;
+  for (const RegisteredLandmark& landmark : parts_.registry.landmarks())
+    if (!state_.is_constant(landmark.block)) considered_.push_back(landmark.block);
+  given_ = considered_.size();
+}
+
+SavedMap EkfSlam::saved_map() const {
+  if (!parts_.measurement) throw std::invalid_argument("a filter of displacements has no map");
+  return leave_map(state_, pose_, calibration_, parts_.registry,
+                   parts_.measurement->landmark_spec());
+}
+
+std::span<const BlockId> EkfSlam::considered() {
+  const auto calibration = calibration_.considered();
+  if (given_ == 0) return calibration;
+  considered_.resize(given_);
+  considered_.insert(considered_.end(), calibration.begin(), calibration.end());
+  return considered_;
 }
 
 const DisplacementModel* EkfSlam::displacement_model() const {
@@ -112,7 +142,8 @@ void EkfSlam::associate(std::span<const Feature> features, UpdateOutcome& outcom
   accepted_.reserve(features.size());
   used_.clear();
   for (std::size_t i = 0; i < features.size(); ++i) {
-    const Verdict& verdict = verdicts_[i];
+    Verdict& verdict = verdicts_[i];
+    if (landmarks_given_ && verdict.outcome == Outcome::kNew) verdict.outcome = Outcome::kAmbiguous;
     if (verdict.outcome == Outcome::kGated) ++outcome.gated;
     if (verdict.outcome == Outcome::kAmbiguous) ++outcome.ambiguous;
     if (verdict.outcome != Outcome::kPaired) continue;
@@ -126,7 +157,7 @@ void EkfSlam::associate(std::span<const Feature> features, UpdateOutcome& outcom
 void EkfSlam::correct(std::span<const Feature> features, UpdateOutcome& outcome) {
   const PhaseTimer timer(times_, Phase::kUpdate);
   const Eigen::Vector2d before = state_.estimate(pose_).head<2>();
-  const Correction correction = ekf_.correct(state_, pose_, accepted_, calibration_.considered());
+  const Correction correction = ekf_.correct(state_, pose_, accepted_, considered());
   if (correction.applied) {
     linearizer_.corrected(state_, pose_, before);
     outcome.accepted = static_cast<int>(accepted_.size());

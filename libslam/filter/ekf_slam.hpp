@@ -18,6 +18,7 @@
 #include <libslam/filter/displacement_update.hpp>
 #include <libslam/filter/ekf.hpp>
 #include <libslam/filter/linearizer.hpp>
+#include <libslam/filter/map_start.hpp>
 #include <libslam/measurement/measurement_model.hpp>
 #include <libslam/motion/motion_model.hpp>
 #include <libslam/policy/noise_policy.hpp>
@@ -36,6 +37,7 @@ struct EkfSlamParts {
   std::optional<DisplacementUpdate> displacement;
   std::unique_ptr<NoisePolicy> noise;  ///< null: R as the features bring it
   LandmarkRegistry registry{1, 0};
+  std::optional<MapStart> map;  ///< to start in; needs no point of linearization but the estimate
   BlockVector start;  ///< start pose, storage of the motion model's pose; empty: the origin
   BlockMatrix cov_start = BlockMatrix::Zero(3, 3);        ///< of its error, tangent coordinates
   BlockMatrix cov_no_odometry = BlockMatrix::Zero(3, 3);  ///< added by a step without odometry
@@ -53,7 +55,8 @@ struct UpdateOutcome {
 
 class EkfSlam {
  public:
-  /// Throws std::invalid_argument if a part is missing or the error frame does not support a block.
+  /// Throws std::invalid_argument if a part is missing, the error frame does not support a block,
+  /// or the map to start in does not fit.
   explicit EkfSlam(EkfSlamParts parts);
 
   /// Moves the robot; null: a step without odometry.
@@ -71,12 +74,18 @@ class EkfSlam {
   std::vector<CalibrationValue> calibration() const { return calibration_.values(state_); }
   /// Landmarks by identity; provisional ones only on demand.
   std::vector<LandmarkEstimate> landmarks(bool with_provisional = false) const;
+  /// The map with everything a filter needs to go on from here. Throws std::invalid_argument if it
+  /// measures displacements and has no map.
+  SavedMap saved_map() const;
   /// False once an estimate or a variance is not finite or a variance is negative.
   bool healthy() const;
 
  private:
   const DisplacementModel* displacement_model() const;
+  void start_in_map();
   UpdateOutcome measure_displacement(const Feature& reading);
+  /// Blocks that count with their uncertainty in a correction and do not learn.
+  std::span<const BlockId> considered();
   // The steps of an update, each leaving behind what the next one needs.
   void associate(std::span<const Feature> features, UpdateOutcome& outcome);
   void correct(std::span<const Feature> features, UpdateOutcome& outcome);
@@ -88,6 +97,9 @@ class EkfSlam {
   GaussianState state_;
   BlockId pose_;
   CalibrationStates calibration_;
+  std::vector<BlockId> considered_;  // the given landmarks, then calibration
+  std::size_t given_ = 0;            // how many of them are landmarks
+  bool landmarks_given_ = false;     // localization: no new landmarks
   MotionStep step_;
   std::vector<Feature> adapted_;  // the features with the noise of the policy
   std::vector<Verdict> verdicts_;

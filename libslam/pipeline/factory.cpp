@@ -5,6 +5,7 @@
 #include <libslam/association/nearest_neighbour.hpp>
 #include <libslam/frontend/range_bearing_observation.hpp>
 #include <libslam/frontend/sensor_path_observation.hpp>
+#include <libslam/io/map_file.hpp>
 #include <libslam/measurement/range_bearing.hpp>
 #include <libslam/measurement/sensor_displacement.hpp>
 #include <libslam/motion/ackermann.hpp>
@@ -58,6 +59,16 @@ Eigen::Matrix3d planar_covariance(double sigma_xy, double sigma_heading_deg) {
   return sigma.cwiseAbs2().asDiagonal();
 }
 
+std::optional<MapStart> make_map_start(const MapParameters& map) {
+  if (map.file.empty()) return std::nullopt;
+  MapStart start;
+  start.map = std::make_shared<SavedMap>(read_map_file(map.file, map.sigma));
+  start.landmarks_given = map.mode == "localize";
+  start.at_saved_pose = map.start == "saved_pose";
+  start.saved_calibration = map.calibration == "saved";
+  return start;
+}
+
 }  // namespace
 
 std::unique_ptr<MotionModel> make_motion_model(const MotionParameters& motion,
@@ -88,6 +99,10 @@ EkfSlamParts make_filter_parts(const Parameters& p, const TrueState* truth) {
   parts.registry =
       LandmarkRegistry(p.association.confirm_after, p.association.prune_after,
                        p.association.method == "known_or_nearest" ? kBeyondIdentities : 0);
+  parts.map = make_map_start(p.map);
+  if (parts.map && !parts.map->at_saved_pose)
+    parts.start =
+        Eigen::Vector3d(p.map.initial_x, p.map.initial_y, p.map.initial_heading_deg * kPi / 180.0);
   parts.cov_start =
       planar_covariance(p.filter.initial_sigma_xy, p.filter.initial_sigma_heading_deg);
   parts.cov_no_odometry =

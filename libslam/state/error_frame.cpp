@@ -74,6 +74,9 @@ ChartChange RightInvariantFrame::retract(GaussianState& state, BlockId pose,
       continue;
     }
     auto& x = block.estimate;
+    // xi = -J x turn is the turn about the origin taken back: what has no correction stays,
+    // exactly.
+    if (role == WorldRole::kPoint && delta.segment<2>(block.offset).isZero(0.0)) continue;
     const Eigen::Vector2d before = x.head<2>();
     const Eigen::Vector2d xi = delta.segment<2>(block.offset) - rotated_90(before) * turn;
     const Eigen::Vector2d after = exponential(before, xi);

@@ -16,6 +16,7 @@ void check_frontend(const Parameters& p, Conflicts& conflicts);
 void check_displacement(const Parameters& p, Conflicts& conflicts);
 void check_association(const Parameters& p, Conflicts& conflicts);
 void check_filter(const Parameters& p, TruthAccess truth, Conflicts& conflicts);
+void check_map(const Parameters& p, Conflicts& conflicts);
 void check_policies(const Parameters& p, Conflicts& conflicts);
 
 }  // namespace libslam

@@ -39,7 +39,7 @@ struct JointCompatibilityOptions {
 class JointCompatibility final : public Associator {
  public:
   static constexpr double kLikelihoodRatio = 20.0;  ///< as in NearestNeighbour
-  static constexpr std::size_t kMaxPairs = 768;
+  static constexpr std::size_t kMaxPairs = 400;
 
   /// Throws std::invalid_argument unless 0 < gate_probability <= new_landmark_probability < 1.
   explicit JointCompatibility(const JointCompatibilityOptions& options);

@@ -89,7 +89,7 @@ class Run {
 
   RunSummary finish() {
     const LandmarkMap map = finite_landmarks();
-    const bool known = request_.parameters.association.method != "nearest_neighbour";
+    const bool known = request_.parameters.association.uses_identities();
     RunSummary summary =
         recorder_.finish(summarize(), map, request_.truth,
                          known ? LandmarkIdentity::known : LandmarkIdentity::unknown);

@@ -205,6 +205,7 @@ void JointCompatibility::conclude(std::vector<Verdict>& verdicts) {
     joint_.push();
     verdicts[features_[depth].feature] = {Outcome::kPaired, pairs_[pair].landmark};
   }
+  if (exhausted()) return;  // what a better hypothesis pairs is not new
   for (std::size_t depth = 0; depth < features_.size(); ++depth)
     if (!contested_[depth] && best_.pair[depth] == kNone && beyond_all_landmarks(features_[depth]))
       verdicts[features_[depth].feature].outcome = Outcome::kNew;

@@ -42,8 +42,7 @@ void SelectedPairs::place_blocks(const GaussianState& state) {
 void SelectedPairs::finish(const GaussianState& state) {
   place_blocks(state);
   if (p_.rows() < block_rows_) p_.resize(2 * block_rows_, 2 * block_rows_);
-  if (pht_.rows() < block_rows_ || pht_.cols() < rows_)
-    pht_.resize(2 * block_rows_, 2 * rows_);
+  if (pht_.rows() < block_rows_ || pht_.cols() < rows_) pht_.resize(2 * block_rows_, 2 * rows_);
   Index col = 0;
   for (const BlockId second : blocks_) {
     const Index cols = state.size(second);
@@ -73,9 +72,8 @@ MeasurementMatrix SelectedPairs::covariance(std::size_t first, std::size_t secon
   MeasurementMatrix sum = MeasurementMatrix::Zero(pair.innovation.size(), other.innovation.size());
   for (std::size_t k = pair.first_column; k < pair.end_column; ++k) {
     const Column& column = columns_[k];
-    sum += column.jacobian.lazyProduct(pht_.block(column.row, other.first_row,
-                                                  column.jacobian.cols(),
-                                                  other.innovation.size()));
+    sum += column.jacobian.lazyProduct(
+        pht_.block(column.row, other.first_row, column.jacobian.cols(), other.innovation.size()));
   }
   if (first == second) sum += pair.noise;
   return sum;

@@ -42,10 +42,10 @@ class SelectedPairs {
 
   std::vector<Pair> pairs_;
   std::vector<Column> columns_;
-  std::vector<BlockId> blocks_;           // that occur, each once
-  std::vector<Eigen::Index> row_of_;      // by BlockId::value, of those in blocks_
+  std::vector<BlockId> blocks_;       // that occur, each once
+  std::vector<Eigen::Index> row_of_;  // by BlockId::value, of those in blocks_
   Eigen::Index rows_ = 0, block_rows_ = 0;
-  Eigen::MatrixXd p_, pht_;               // leading parts of larger matrices
+  Eigen::MatrixXd p_, pht_;  // leading parts of larger matrices
 };
 
 }  // namespace libslam

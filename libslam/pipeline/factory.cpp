@@ -97,9 +97,9 @@ EkfSlamParts make_filter_parts(const Parameters& p, const TrueState* truth) {
   }
   parts.frame = make_error_frame(p.filter.error_frame);
   parts.linearization = make_linearization_point(p, truth);
-  parts.registry =
-      LandmarkRegistry(p.association.confirm_after, p.association.prune_after,
-                       p.association.uses_identities() && p.association.method != "known" ? kBeyondIdentities : 0);
+  parts.registry = LandmarkRegistry(
+      p.association.confirm_after, p.association.prune_after,
+      p.association.uses_identities() && p.association.method != "known" ? kBeyondIdentities : 0);
   parts.cov_start =
       planar_covariance(p.filter.initial_sigma_xy, p.filter.initial_sigma_heading_deg);
   parts.cov_no_odometry =
@@ -109,9 +109,8 @@ EkfSlamParts make_filter_parts(const Parameters& p, const TrueState* truth) {
 
 std::unique_ptr<Frontend> make_frontend(const Parameters& p) {
   if (p.frontend.source == "range_bearing")
-    return std::make_unique<RangeBearingObservation>(p.frontend, p.measurement,
-                                                     p.input.sensor_label,
-                                                     p.association.uses_identities());
+    return std::make_unique<RangeBearingObservation>(
+        p.frontend, p.measurement, p.input.sensor_label, p.association.uses_identities());
   if (p.frontend.source == "sensor_path")
     return std::make_unique<SensorPathObservation>(p.measurement, p.input.sensor_label);
   throw_unknown("front-end", p.frontend.source);

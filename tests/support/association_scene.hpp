@@ -26,7 +26,7 @@ struct AssociationSceneOptions {
   double max_range = 15.0;          ///< [m]
   double sigma_position = 0.3;      ///< of the pose [m]
   double sigma_heading = 3.0 * 3.14159265358979323846 / 180.0;
-  double sigma_landmark = 0.05;     ///< of each coordinate in the map [m]
+  double sigma_landmark = 0.05;  ///< of each coordinate in the map [m]
   double sigma_range = 0.05, sigma_bearing = 0.5 * 3.14159265358979323846 / 180.0;
 };
 
@@ -61,7 +61,8 @@ class AssociationScene {
     for (const std::size_t i : seen) observe(truth[i], i, options);
     std::uniform_real_distribution<double> unit(-1.0, 1.0);
     for (int i = 0; i < options.unmapped;) {
-      const Eigen::Vector2d object = options.max_range * Eigen::Vector2d(unit(random_), unit(random_));
+      const Eigen::Vector2d object =
+          options.max_range * Eigen::Vector2d(unit(random_), unit(random_));
       if (object.norm() > options.max_range) continue;
       observe(object, kUnmapped, options);
       ++i;

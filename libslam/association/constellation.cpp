@@ -45,8 +45,7 @@ class Solver {
         views_(views),
         options_(options),
         gate_(chi_square_quantile(options.pair_probability, 2)),
-        unmapped_density_(std::max(options.unmapped_density_ratio * map.density(),
-                                   static_cast<double>(seen.size()) / viewed_area())) {}
+        unmapped_density_(options.unmapped_density_ratio * map.density()) {}
 
   std::optional<Solution> solve(const PoseVote& vote) {
     Solution solution;
@@ -139,13 +138,6 @@ class Solver {
     return missed;
   }
 
-  double viewed_area() const {
-    double area = 0.0;
-    for (const SensorView& view : views_)
-      area = std::max(area, 0.5 * view.field_of_view * view.max_range * view.max_range);
-    return area > 0.0 ? area : map_.area();
-  }
-
   const ConstellationIndex& map_;
   std::span<const PlanarPoint> seen_;
   std::span<const SensorView> views_;
@@ -156,11 +148,17 @@ class Solver {
   std::vector<bool> seen_taken_, landmark_taken_;
 };
 
-bool same_pose(const PoseFit& a, const PoseFit& b) {
+/// Poses that agree, or that have most pairs in common: two points fix a pose, so that these differ
+/// in the partners of some points, not in the place.
+bool same_place(const Solution& a, const Solution& b) {
   static const double kGate = chi_square_quantile(kSamePose, 3);
-  Vector3d difference = a.T_world_robot - b.T_world_robot;
+  const auto common = std::count_if(a.pairs.begin(), a.pairs.end(), [&b](const Pairing& pair) {
+    return std::find(b.pairs.begin(), b.pairs.end(), pair) != b.pairs.end();
+  });
+  if (2 * static_cast<std::size_t>(common) > std::max(a.pairs.size(), b.pairs.size())) return true;
+  Vector3d difference = a.fit.T_world_robot - b.fit.T_world_robot;
   difference[2] = wrap_angle(difference[2]);
-  return difference.dot((a.cov + b.cov).inverse() * difference) <= kGate;
+  return difference.dot((a.fit.cov + b.fit.cov).inverse() * difference) <= kGate;
 }
 
 /// Of the best solution: log of its posterior over that of all other poses and of none.
@@ -170,7 +168,7 @@ double odds_of_best(const std::vector<Solution>& solutions) {
   for (std::size_t i = 1; i < solutions.size(); ++i) {
     const auto earlier = solutions.begin() + static_cast<std::ptrdiff_t>(i);
     const bool counted = std::any_of(solutions.begin(), earlier, [&](const Solution& other) {
-      return same_pose(other.fit, solutions[i].fit);
+      return same_place(other, solutions[i]);
     });
     if (!counted) others += std::exp(std::min(solutions[i].log_odds, 700.0));
   }
@@ -190,7 +188,8 @@ ConstellationMatch match_constellation(const ConstellationIndex& map,
   if (seen.size() < required || map.points().size() < required) return match;
   Solver solver(map, seen, views, options);
   std::vector<Solution> solutions;
-  for (const PoseVote& vote : vote_on_poses(map, seen, required, options.budget))
+  for (const PoseVote& vote : vote_on_poses(
+           map, seen, {options.least_pairs, options.least_paired_fraction, options.budget}))
     if (auto solution = solver.solve(vote); solution && solution->pairs.size() >= required)
       solutions.push_back(std::move(*solution));
   if (solutions.empty()) return match;

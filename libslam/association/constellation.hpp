@@ -52,7 +52,7 @@ struct ConstellationOptions {
   double pair_probability = 0.999;     ///< chi-square gate of a pair
   double fit_probability = 0.999;      ///< chi-square gate of the fit of all pairs
   double least_log_odds = 11.5;        ///< against all else together; 11.5: 1 in 100 000
-  std::size_t budget = 40'000;         ///< poses that are voted on, most
+  std::size_t budget = 12'000;         ///< poses that are voted on, most
 };
 
 enum class ConstellationVerdict {

@@ -28,17 +28,18 @@ struct Baseline {
   double cost;  // poses to be tried, times the area in which others may vote by chance
 };
 
+/// Another seen point, from the best known place of the baseline.
+struct Voter {
+  Vector2d arm;
+  double radius;  // within which it agrees [m]
+};
+
 class Ballot {
  public:
   Ballot(const ConstellationIndex& map, std::span<const PlanarPoint> seen, std::size_t required)
       : map_(map), seen_(seen), required_(required) {
-    for (std::size_t i = 0; i < seen.size(); ++i) {
-      sigma_.push_back(std::sqrt(seen[i].cov.trace()) + map.largest_sigma());
-      order_.push_back(i);
-    }
-    std::sort(order_.begin(), order_.end(), [this](std::size_t i, std::size_t k) {
-      return std::tie(sigma_[i], i) < std::tie(sigma_[k], k);
-    });
+    for (std::size_t i = 0; i < seen.size(); ++i)
+      sigma_.push_back(std::hypot(std::sqrt(seen[i].cov.trace()), map.largest_sigma()));
   }
 
   std::vector<Baseline> baselines() const {
@@ -52,6 +53,14 @@ class Ballot {
   }
 
   void vote(const Baseline& baseline) {
+    voters_.clear();
+    for (std::size_t i = 0; i < seen_.size(); ++i) {
+      if (i == baseline.a || i == baseline.b) continue;
+      const double radius = kSigmas * tolerance(baseline, i);
+      voters_.push_back({seen_[i].position - best_known(baseline), radius});
+    }
+    std::sort(voters_.begin(), voters_.end(),
+              [](const Voter& x, const Voter& y) { return x.radius < y.radius; });
     for (const PointDistance& partner : baseline.partners) {
       propose(baseline, partner.first, partner.second);
       propose(baseline, partner.second, partner.first);
@@ -78,8 +87,7 @@ class Ballot {
     const double reach = kSigmas * std::sqrt(along + 2.0 * std::pow(map_.largest_sigma(), 2));
     baseline.partners = map_.between(length - reach, length + reach);
     double area = 0.0;
-    for (std::size_t i = 0; i < seen_.size(); ++i)
-      area += std::pow(sigma_[i] + spread(baseline, i), 2);
+    for (std::size_t i = 0; i < seen_.size(); ++i) area += std::pow(tolerance(baseline, i), 2);
     baseline.cost = static_cast<double>(2 * baseline.partners.size() + 1) * area;
     out.push_back(baseline);
   }
@@ -88,10 +96,10 @@ class Ballot {
     return baseline.share_a * seen_[baseline.a].position +
            (1.0 - baseline.share_a) * seen_[baseline.b].position;
   }
-  /// What the uncertainty of the proposed pose adds to where point i should be.
-  double spread(const Baseline& baseline, std::size_t i) const {
+  /// Standard deviation of where a landmark is against where point i puts it.
+  double tolerance(const Baseline& baseline, std::size_t i) const {
     const double arm = (seen_[i].position - best_known(baseline)).norm();
-    return baseline.sigma_place + baseline.sigma_turn * arm;
+    return std::hypot(sigma_[i], baseline.sigma_place, baseline.sigma_turn * arm);
   }
 
   void propose(const Baseline& baseline, std::size_t landmark_a, std::size_t landmark_b) {
@@ -99,31 +107,31 @@ class Ballot {
     const Vector2d& m_b = map_.points()[landmark_b].position;
     const Vector2d there = m_b - m_a;
     const Vector2d here = seen_[baseline.b].position - seen_[baseline.a].position;
-    Vector3d pose = Vector3d::Zero();
-    pose[2] = wrap_angle(std::atan2(there.y(), there.x()) - std::atan2(here.y(), here.x()));
-    const Eigen::Matrix2d rotation = rotation_of(pose);
-    pose.head<2>() =
-        baseline.share_a * m_a + (1.0 - baseline.share_a) * m_b - rotation * best_known(baseline);
-    const std::size_t votes = count_votes(baseline, pose, rotation);
+    Eigen::Matrix2d rotation;  // turns `here` into the direction of `there`
+    const double c = here.dot(there), s = here.x() * there.y() - here.y() * there.x();
+    rotation << c, -s, s, c;
+    rotation /= std::hypot(c, s);
+    const Vector2d anchor = baseline.share_a * m_a + (1.0 - baseline.share_a) * m_b;
+    const std::size_t votes = count_votes(anchor, rotation);
     if (votes < required_) return;
+    Vector3d pose;
+    pose << anchor - rotation * best_known(baseline), std::atan2(s, c);
     const std::array<PointPair, 2> two{{{&seen_[baseline.a], &map_.points()[landmark_a]},
                                         {&seen_[baseline.b], &map_.points()[landmark_b]}}};
     keep({pose, fit_pose(two, pose).cov, votes}, baseline);
   }
 
   /// Gives up as soon as `required_` is out of reach.
-  std::size_t count_votes(const Baseline& baseline, const Vector3d& pose,
-                          const Eigen::Matrix2d& rotation) const {
-    std::size_t votes = 2, left = seen_.size() - 2;
-    for (const std::size_t i : order_) {
-      if (i == baseline.a || i == baseline.b) continue;
+  std::size_t count_votes(const Vector2d& anchor, const Eigen::Matrix2d& rotation) const {
+    std::size_t votes = 2, left = voters_.size();
+    for (const Voter& voter : voters_) {
       if (votes + left < required_) return 0;
       --left;
-      const Vector2d place = pose.head<2>() + rotation * seen_[i].position;
-      const double radius = kSigmas * (sigma_[i] + spread(baseline, i));
+      const Vector2d place = anchor + rotation * voter.arm;
       bool found = false;
-      map_.near(place, radius, [&](std::size_t k) {
-        found = found || (map_.points()[k].position - place).squaredNorm() <= radius * radius;
+      map_.near(place, voter.radius, [&](std::size_t k) {
+        found = found ||
+                (map_.points()[k].position - place).squaredNorm() <= voter.radius * voter.radius;
       });
       if (found) ++votes;
     }
@@ -150,21 +158,28 @@ class Ballot {
   const ConstellationIndex& map_;
   std::span<const PlanarPoint> seen_;
   std::size_t required_;
-  std::vector<double> sigma_;       // of seen point and landmark together
-  std::vector<std::size_t> order_;  // of seen points, the best known first
+  std::vector<double> sigma_;  // of seen point and landmark together
+  std::vector<Voter> voters_;  // of the baseline that is voted on, the sharpest first
   std::vector<PoseVote> kept_;
 };
 
 }  // namespace
 
 std::vector<PoseVote> vote_on_poses(const ConstellationIndex& map,
-                                    std::span<const PlanarPoint> seen, std::size_t required,
-                                    std::size_t budget) {
-  Ballot ballot(map, seen, required);
+                                    std::span<const PlanarPoint> seen,
+                                    const PoseVoteOptions& options) {
+  std::vector<PlanarPoint> voters(seen.begin(), seen.end());
+  std::stable_sort(voters.begin(), voters.end(), [](const PlanarPoint& a, const PlanarPoint& b) {
+    return a.cov.trace() < b.cov.trace();
+  });
+  voters.resize(std::min(voters.size(), kMaxVoters));
+  const double part = std::ceil(options.least_fraction * static_cast<double>(voters.size()));
+  Ballot ballot(map, voters, std::max(options.least_votes, static_cast<std::size_t>(part)));
+  std::size_t left = options.budget;
   for (const Baseline& baseline : ballot.baselines()) {
     const std::size_t poses = 2 * baseline.partners.size();
-    if (poses > budget) continue;
-    budget -= poses;
+    if (poses > left) continue;
+    left -= poses;
     ballot.vote(baseline);
   }
   return ballot.result();

@@ -17,12 +17,21 @@ struct PoseVote {
   std::size_t votes = 0;          ///< seen points near some point of the map, the two included
 };
 
-/// The poses with most votes, at most `kMaxVotes`, each at least `required`; poses that agree are
-/// one. Pairs of seen points that leave the fewest and the sharpest poses come first; each is
-/// tried against all its partners or not at all, and at most `budget` poses are tried.
-inline constexpr std::size_t kMaxVotes = 48;
+struct PoseVoteOptions {
+  std::size_t least_votes = 4;
+  double least_fraction = 0.5;  ///< of those who vote
+  std::size_t budget = 12'000;  ///< poses that are tried, most
+};
+
+/// Only the points that are known best vote: the others fit nearly everywhere.
+inline constexpr std::size_t kMaxVoters = 16;
+inline constexpr std::size_t kMaxVotes = 32;
+
+/// The poses with most votes, at most `kMaxVotes`; poses that agree are one. Pairs of seen points
+/// that leave the fewest and the sharpest poses come first; each is tried against all its partners
+/// or not at all.
 std::vector<PoseVote> vote_on_poses(const ConstellationIndex& map,
-                                    std::span<const PlanarPoint> seen, std::size_t required,
-                                    std::size_t budget);
+                                    std::span<const PlanarPoint> seen,
+                                    const PoseVoteOptions& options);
 
 }  // namespace libslam

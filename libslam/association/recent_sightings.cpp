@@ -1,6 +1,3 @@
-#include <algorithm>
-#include <tuple>
-
 #include <Eigen/LU>
 
 #include <libslam/association/pose_fit.hpp>
@@ -13,11 +10,6 @@ namespace libslam {
 namespace {
 
 constexpr double kSameObject = 0.999;
-
-struct Candidate {
-  double distance2;
-  std::size_t old, seen;
-};
 
 }  // namespace
 
@@ -40,27 +32,24 @@ void RecentSightings::move(const Eigen::Vector3d& T_old_new, const Eigen::Matrix
 void RecentSightings::add(std::span<const PlanarPoint> seen, const SensorView& view) {
   static const double kGate = chi_square_quantile(kSameObject, 2);
   ++now_;
-  std::vector<Candidate> candidates;
-  for (std::size_t k = 0; k < points_.size(); ++k)
-    for (std::size_t i = 0; i < seen.size(); ++i) {
+  const std::size_t before = points_.size();
+  std::vector<std::size_t> partner(seen.size()), partners(seen.size(), 0), claims(before, 0);
+  for (std::size_t i = 0; i < seen.size(); ++i)
+    for (std::size_t k = 0; k < before; ++k) {
       const Eigen::Vector2d e = seen[i].position - points_[k].position;
-      const double distance2 = e.dot((seen[i].cov + points_[k].cov).inverse() * e);
-      if (distance2 <= kGate) candidates.push_back({distance2, k, i});
+      if (e.dot((seen[i].cov + points_[k].cov).inverse() * e) > kGate) continue;
+      partner[i] = k;
+      ++partners[i];
+      ++claims[k];
+      last_seen_[k] = now_;
     }
-  std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
-    return std::tie(a.distance2, a.old, a.seen) < std::tie(b.distance2, b.old, b.seen);
-  });
-  std::vector<bool> known(seen.size(), false);
-  for (const Candidate& candidate : candidates) {
-    if (known[candidate.seen] || last_seen_[candidate.old] == now_) continue;
-    fuse(points_[candidate.old], seen[candidate.seen]);
-    known[candidate.seen] = true;
-    last_seen_[candidate.old] = now_;
-  }
   for (std::size_t i = 0; i < seen.size(); ++i) {
-    if (known[i]) continue;
-    points_.push_back(seen[i]);
-    last_seen_.push_back(now_);
+    if (partners[i] == 0) {
+      points_.push_back(seen[i]);
+      last_seen_.push_back(now_);
+    } else if (partners[i] == 1 && claims[partner[i]] == 1) {
+      fuse(points_[partner[i]], seen[i]);
+    }
   }
   std::size_t kept = 0;
   for (std::size_t k = 0; k < points_.size(); ++k) {

@@ -12,8 +12,9 @@
 
 namespace libslam {
 
-/// Sightings of one object are fused: the nearest pairs of an old and a new point within the
-/// chi-square probability .999 are one. Odometry noise goes into each point by itself: that points
+/// An old and a new point within the chi-square probability .999 are one object and are fused, if
+/// neither has another such partner; where two objects contest a sighting it is not used. Odometry
+/// noise goes into each point by itself: that points
 /// move together is not kept, so that the constellation counts as softer than it is.
 class RecentSightings {
  public:

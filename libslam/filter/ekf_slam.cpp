@@ -136,7 +136,9 @@ UpdateOutcome EkfSlam::update(std::span<const Feature> features) {
 
 void EkfSlam::associate(std::span<const Feature> features, UpdateOutcome& outcome) {
   const PhaseTimer timer(times_, Phase::kAssociate);
-  PairTest test({state_, pose_, ekf_, linearizer_, *parts_.measurement, parts_.registry}, features);
+  PairTest test(
+      {state_, pose_, ekf_, linearizer_, *parts_.measurement, parts_.registry, selected_pairs_},
+      features);
   parts_.associator->associate(features, parts_.registry, test, verdicts_);
   accepted_.clear();
   accepted_.reserve(features.size());

@@ -19,6 +19,7 @@
 #include <libslam/filter/ekf.hpp>
 #include <libslam/filter/linearizer.hpp>
 #include <libslam/filter/map_start.hpp>
+#include <libslam/filter/selected_pairs.hpp>
 #include <libslam/measurement/measurement_model.hpp>
 #include <libslam/motion/motion_model.hpp>
 #include <libslam/policy/noise_policy.hpp>
@@ -103,6 +104,7 @@ class EkfSlam {
   MotionStep step_;
   std::vector<Feature> adapted_;  // the features with the noise of the policy
   std::vector<Verdict> verdicts_;
+  SelectedPairs selected_pairs_;
   std::vector<LinearizedMeasurement> accepted_;
   std::vector<std::size_t> used_;  // the features behind `accepted_`
   std::vector<Postfit> postfits_;

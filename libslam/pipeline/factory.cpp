@@ -1,6 +1,7 @@
 #include <stdexcept>
 #include <string>
 
+#include <libslam/association/joint_compatibility.hpp>
 #include <libslam/association/known.hpp>
 #include <libslam/association/nearest_neighbour.hpp>
 #include <libslam/frontend/range_bearing_observation.hpp>
@@ -37,10 +38,21 @@ std::unique_ptr<Associator> make_associator(const Parameters& p, const Measureme
     return std::make_unique<NearestNeighbour>(
         gate, chi_square_quantile(p.association.new_landmark_probability, dof));
   };
+  const auto joint = [&] {
+    JointCompatibilityOptions options;
+    options.gate_probability = p.association.gate_probability;
+    options.new_landmark_probability = p.association.new_landmark_probability;
+    options.dimension = dof;
+    return std::make_unique<JointCompatibility>(options);
+  };
+  const double all = chi_square_quantile(1.0, dof);
   if (p.association.method == "known") return std::make_unique<KnownAssociation>(gate);
   if (p.association.method == "nearest_neighbour") return nearest();
+  if (p.association.method == "joint_compatibility") return joint();
   if (p.association.method == "known_or_nearest")
-    return std::make_unique<KnownAssociation>(chi_square_quantile(1.0, dof), nearest());
+    return std::make_unique<KnownAssociation>(all, nearest());
+  if (p.association.method == "known_or_joint")
+    return std::make_unique<KnownAssociation>(all, joint());
   throw_unknown("association method", p.association.method);
 }
 
@@ -96,9 +108,9 @@ EkfSlamParts make_filter_parts(const Parameters& p, const TrueState* truth) {
   }
   parts.frame = make_error_frame(p.filter.error_frame);
   parts.linearization = make_linearization_point(p, truth);
-  parts.registry =
-      LandmarkRegistry(p.association.confirm_after, p.association.prune_after,
-                       p.association.method == "known_or_nearest" ? kBeyondIdentities : 0);
+  parts.registry = LandmarkRegistry(
+      p.association.confirm_after, p.association.prune_after,
+      p.association.uses_identities() && p.association.method != "known" ? kBeyondIdentities : 0);
   parts.map = make_map_start(p.map);
   if (parts.map && !parts.map->at_saved_pose)
     parts.start =
@@ -112,9 +124,8 @@ EkfSlamParts make_filter_parts(const Parameters& p, const TrueState* truth) {
 
 std::unique_ptr<Frontend> make_frontend(const Parameters& p) {
   if (p.frontend.source == "range_bearing")
-    return std::make_unique<RangeBearingObservation>(p.frontend, p.measurement,
-                                                     p.input.sensor_label,
-                                                     p.association.method != "nearest_neighbour");
+    return std::make_unique<RangeBearingObservation>(
+        p.frontend, p.measurement, p.input.sensor_label, p.association.uses_identities());
   if (p.frontend.source == "sensor_path")
     return std::make_unique<SensorPathObservation>(p.measurement, p.input.sensor_label);
   throw_unknown("front-end", p.frontend.source);

@@ -99,7 +99,7 @@ class Run {
   RunSummary finish() {
     save_map();
     const LandmarkMap map = finite_landmarks();
-    const bool known = request_.parameters.association.method != "nearest_neighbour";
+    const bool known = request_.parameters.association.uses_identities();
     RunSummary summary =
         recorder_.finish(summarize(), map, request_.truth,
                          known ? LandmarkIdentity::known : LandmarkIdentity::unknown);

@@ -21,6 +21,7 @@
 #include <libslam/measurement/measurement_model.hpp>
 #include <libslam/motion/motion_model.hpp>
 #include <libslam/policy/noise_policy.hpp>
+#include <libslam/policy/process_scale.hpp>
 
 namespace libslam {
 
@@ -35,6 +36,7 @@ struct EkfSlamParts {
   /// `associator` may then be null.
   std::optional<DisplacementUpdate> displacement;
   std::unique_ptr<NoisePolicy> noise;  ///< null: R as the features bring it
+  std::unique_ptr<ProcessScale> process;  ///< null: Q as the motion model says
   LandmarkRegistry registry{1, 0};
   BlockVector start;  ///< start pose, storage of the motion model's pose; empty: the origin
   BlockMatrix cov_start = BlockMatrix::Zero(3, 3);        ///< of its error, tangent coordinates
@@ -69,6 +71,8 @@ class EkfSlam {
   PhaseTimes& times() { return times_; }
 
   std::vector<CalibrationValue> calibration() const { return calibration_.values(state_); }
+  /// What the policies believe of the noise; empty without one.
+  std::vector<AdaptedNoise> noise() const;
   /// Landmarks by identity; provisional ones only on demand.
   std::vector<LandmarkEstimate> landmarks(bool with_provisional = false) const;
   /// False once an estimate or a variance is not finite or a variance is negative.
@@ -76,6 +80,7 @@ class EkfSlam {
 
  private:
   const DisplacementModel* displacement_model() const;
+  void scale_process_noise();
   UpdateOutcome measure_displacement(const Feature& reading);
   // The steps of an update, each leaving behind what the next one needs.
   void associate(std::span<const Feature> features, UpdateOutcome& outcome);

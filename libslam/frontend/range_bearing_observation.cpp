@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include <Eigen/Dense>
@@ -43,6 +44,13 @@ RangeBearingObservation::RangeBearingObservation(const FrontendParameters& front
       with_identities_(with_identities),
       sensor_label_(std::move(sensor_label)) {}
 
+int RangeBearingObservation::channel_of(const std::string& label) {
+  const auto known = std::ranges::find(labels_, label);
+  const auto channel = known - labels_.begin();
+  if (known == labels_.end()) labels_.push_back(label);
+  return static_cast<int>(channel);
+}
+
 void RangeBearingObservation::extract(const mrpt::obs::CSensoryFrame& frame,
                                       std::vector<FeatureBatch>& batches) {
   batches.clear();
@@ -51,6 +59,7 @@ void RangeBearingObservation::extract(const mrpt::obs::CSensoryFrame& frame,
     if (observation == nullptr) continue;
     if (!sensor_label_.empty() && observation->sensorLabel != sensor_label_) continue;
     const auto& on_robot = observation->sensorLocationOnRobot;
+    const int channel = channel_of(observation->sensorLabel);
     FeatureBatch batch;
     batch.reserve(observation->sensedData.size());
     for (const auto& measured : observation->sensedData) {
@@ -63,6 +72,7 @@ void RangeBearingObservation::extract(const mrpt::obs::CSensoryFrame& frame,
       Feature& feature = batch.emplace_back();
       const bool identified = with_identities_ && measured.landmarkID >= 0;
       feature.id = identified ? measured.landmarkID : kNoIdentity;
+      feature.channel = channel;
       feature.z = Eigen::Vector2d(range, measured.yaw);
       feature.cov = only_configured_ ? configured_ : noise_of(*observation, measured, configured_);
       feature.T_robot_sensor = {on_robot.x(), on_robot.y(), on_robot.yaw()};

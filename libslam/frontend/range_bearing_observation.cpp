@@ -12,6 +12,9 @@ namespace {
 
 using Observation = mrpt::obs::CObservationBearingRange;
 
+/// A log with a new label in every observation must not cost more and more.
+constexpr int kMostChannels = 100;
+
 Eigen::Matrix2d diagonal(double sigma_range, double sigma_bearing) {
   return Eigen::Vector2d(sigma_range * sigma_range, sigma_bearing * sigma_bearing).asDiagonal();
 }
@@ -46,9 +49,11 @@ RangeBearingObservation::RangeBearingObservation(const FrontendParameters& front
 
 int RangeBearingObservation::channel_of(const std::string& label) {
   const auto known = std::ranges::find(labels_, label);
-  const auto channel = known - labels_.begin();
-  if (known == labels_.end()) labels_.push_back(label);
-  return static_cast<int>(channel);
+  const auto channel = static_cast<int>(known - labels_.begin());
+  if (known != labels_.end()) return channel;
+  if (channel == kMostChannels) return kMostChannels - 1;
+  labels_.push_back(label);
+  return channel;
 }
 
 void RangeBearingObservation::extract(const mrpt::obs::CSensoryFrame& frame,

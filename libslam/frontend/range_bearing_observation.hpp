@@ -14,7 +14,7 @@ namespace libslam {
 /// the sensor sigmas of the log where positive, else the configured sigmas; `measurement.noise:
 /// configured` takes the configured ones always. Elevation is projected out: range * cos(pitch);
 /// the sensor's pose contributes x, y and yaw. Channels number the sensor labels by their first
-/// appearance.
+/// appearance; beyond a hundred, labels share the last channel.
 class RangeBearingObservation final : public Frontend {
  public:
   /// `with_identities` false: features carry none, whatever the log says.

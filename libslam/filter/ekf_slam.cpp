@@ -98,11 +98,17 @@ void EkfSlam::propagate(const MotionAction* action) {
     return;
   }
   linearizer_.linearize(*parts_.motion, state_, pose_, calibration_.of_motion(), *action, step_);
+  if (parts_.process) scale_process_noise();
   if (!calibration_.empty())
     calibration_.observe(state_, pose_, step_, action->dt, displacement_model());
   ekf_.propagate(state_, step_);
   linearizer_.moved(state_, pose_);
   calibration_.diffuse(state_, action->dt);
+}
+
+void EkfSlam::scale_process_noise() {
+  for (const BlockJacobian& column : step_.wrt)
+    if (column.block == pose_) parts_.process->scale(column.jacobian, step_.cov_noise);
 }
 
 UpdateOutcome EkfSlam::measure_displacement(const Feature& reading) {
@@ -170,6 +176,8 @@ void EkfSlam::correct(std::span<const Feature> features, UpdateOutcome& outcome)
       for (std::size_t i = 0; i < used_.size(); ++i) postfits_[i].feature = used_[i];
       parts_.noise->observe(features, postfits_);
     }
+    if (parts_.process)
+      parts_.process->observe(ekf_.look_back(accepted_, pose_, state_.size(pose_)));
   } else {
     // An innovation covariance that is not positive definite: nothing was used.
     for (Verdict& verdict : verdicts_)
@@ -193,6 +201,13 @@ void EkfSlam::add_landmarks(std::span<const Feature> features, UpdateOutcome& ou
   }
   outcome.verdicts = verdicts_;
   for (const BlockId given_up : parts_.registry.record_update()) state_.remove(given_up);
+}
+
+std::vector<AdaptedNoise> EkfSlam::noise() const {
+  std::vector<AdaptedNoise> all;
+  if (parts_.noise) all = parts_.noise->noise();
+  if (parts_.process) all.push_back(parts_.process->noise());
+  return all;
 }
 
 std::vector<LandmarkEstimate> EkfSlam::landmarks(bool with_provisional) const {

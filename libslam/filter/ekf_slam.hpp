@@ -23,6 +23,7 @@
 #include <libslam/measurement/measurement_model.hpp>
 #include <libslam/motion/motion_model.hpp>
 #include <libslam/policy/noise_policy.hpp>
+#include <libslam/policy/process_scale.hpp>
 
 namespace libslam {
 
@@ -37,6 +38,7 @@ struct EkfSlamParts {
   /// `associator` may then be null.
   std::optional<DisplacementUpdate> displacement;
   std::unique_ptr<NoisePolicy> noise;  ///< null: R as the features bring it
+  std::unique_ptr<ProcessScale> process;  ///< null: Q as the motion model says
   LandmarkRegistry registry{1, 0};
   std::optional<MapStart> map;  ///< to start in; needs no point of linearization but the estimate
   BlockVector start;  ///< start pose, storage of the motion model's pose; empty: the origin
@@ -73,6 +75,8 @@ class EkfSlam {
   PhaseTimes& times() { return times_; }
 
   std::vector<CalibrationValue> calibration() const { return calibration_.values(state_); }
+  /// What the policies believe of the noise; empty without one.
+  std::vector<AdaptedNoise> noise() const;
   /// Landmarks by identity; provisional ones only on demand.
   std::vector<LandmarkEstimate> landmarks(bool with_provisional = false) const;
   /// The map with everything a filter needs to go on from here. Throws std::invalid_argument if it
@@ -84,6 +88,7 @@ class EkfSlam {
  private:
   const DisplacementModel* displacement_model() const;
   void start_in_map();
+  void scale_process_noise();
   UpdateOutcome measure_displacement(const Feature& reading);
   /// Blocks that count with their uncertainty in a correction and do not learn.
   std::span<const BlockId> considered();

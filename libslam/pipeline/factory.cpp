@@ -13,6 +13,7 @@
 #include <libslam/motion/differential.hpp>
 #include <libslam/motion/odometry_increment.hpp>
 #include <libslam/pipeline/factory.hpp>
+#include <libslam/policy/sage_husa.hpp>
 #include <libslam/state/chi_square.hpp>
 
 namespace libslam {
@@ -66,6 +67,37 @@ std::unique_ptr<LinearizationPoint> make_linearization_point(const Parameters& p
   return std::make_unique<TruthPoint>(*truth);
 }
 
+/// The rows of the measurements of a model.
+std::vector<NoiseComponent> noise_components(const Parameters& p) {
+  const NoiseAdaptationParameters& n = p.policies.noise_adaptation;
+  constexpr double kDegree = kPi / 180.0;
+  if (p.measurement.model == "range_bearing")
+    return {{"range", p.measurement.sigma_range, n.min_sigma_range, n.max_sigma_range,
+             n.range_growth_per_m},
+            {"bearing", p.measurement.sigma_bearing_deg * kDegree,
+             n.min_sigma_bearing_deg * kDegree, n.max_sigma_bearing_deg * kDegree,
+             n.bearing_growth_per_m}};
+  throw_unknown("measurement model of a noise adaptation", p.measurement.model);
+}
+
+std::unique_ptr<NoisePolicy> make_noise_policy(const Parameters& p) {
+  if (p.policies.noise_adaptation.method == "off") return nullptr;
+  const double gate = p.association.gate_probability;
+  const bool trusts_identities = p.association.method == "known_or_nearest";
+  return std::make_unique<SageHusa>(p.policies.noise_adaptation, noise_components(p),
+                                    GateProbabilities{trusts_identities ? 1.0 : gate, gate});
+}
+
+std::unique_ptr<ProcessScale> make_process_policy(const Parameters& p,
+                                                  const MeasurementModel& model) {
+  if (p.policies.process_adaptation.method == "off") return nullptr;
+  const double gate =
+      p.association.method == "known_or_nearest" ? 1.0 : p.association.gate_probability;
+  return std::make_unique<ProcessScale>(
+      p.policies.process_adaptation,
+      gated_covariance(gate, tangent_dimension(model.landmark_spec())));
+}
+
 Eigen::Matrix3d planar_covariance(double sigma_xy, double sigma_heading_deg) {
   const Eigen::Vector3d sigma(sigma_xy, sigma_xy, sigma_heading_deg * kPi / 180.0);
   return sigma.cwiseAbs2().asDiagonal();
@@ -105,9 +137,11 @@ EkfSlamParts make_filter_parts(const Parameters& p, const TrueState* truth) {
   } else {
     parts.measurement = make_measurement(p);
     parts.associator = make_associator(p, *parts.measurement);
+    parts.process = make_process_policy(p, *parts.measurement);
   }
   parts.frame = make_error_frame(p.filter.error_frame);
   parts.linearization = make_linearization_point(p, truth);
+  parts.noise = make_noise_policy(p);
   parts.registry = LandmarkRegistry(
       p.association.confirm_after, p.association.prune_after,
       p.association.uses_identities() && p.association.method != "known" ? kBeyondIdentities : 0);

@@ -64,6 +64,7 @@ StepRecord Pipeline::update(const LogStep& step) {
   record.ambiguous = last_update_.ambiguous;
   record.new_landmarks = last_update_.new_landmarks;
   record.calibration = filter_.calibration();
+  record.noise = filter_.noise();
   return record;
 }
 

@@ -42,6 +42,7 @@ struct StepRecord {
   int nis_dof = 0;   ///< degrees of freedom of `nis`
   int accepted = 0, gated = 0, ambiguous = 0, new_landmarks = 0;
   std::vector<CalibrationValue> calibration;
+  std::string event;  ///< e.g. "disturbance", "relocalized", "lost"; empty where nothing happened
   double step_ms = 0.0;  ///< wall time of the step; never written to trajectory.csv
 };
 

@@ -15,6 +15,8 @@ EkfSlamParts checked(EkfSlamParts parts) {
   if (!parts.displacement && (!parts.measurement || !parts.associator))
     throw std::invalid_argument(
         "EkfSlam needs a measurement model and an associator, or a displacement model");
+  if (parts.displacement && parts.disturbance)
+    throw std::invalid_argument("EkfSlam notices disturbances by landmarks alone");
   if (parts.displacement && parts.linearization)
     throw std::invalid_argument("EkfSlam linearizes displacements at the estimate");
   return parts;
@@ -35,6 +37,7 @@ UpdateOutcome& UpdateOutcome::operator+=(const UpdateOutcome& other) {
   gated += other.gated;
   ambiguous += other.ambiguous;
   new_landmarks += other.new_landmarks;
+  if (!other.event.empty()) event = other.event;
   verdicts.insert(verdicts.end(), other.verdicts.begin(), other.verdicts.end());
   return *this;
 }
@@ -98,42 +101,64 @@ UpdateOutcome EkfSlam::update(std::span<const Feature> features) {
     parts_.noise->apply(adapted_);
     features = adapted_;
   }
-  associate(features, outcome);
+  associate(features);
+  if (parts_.disturbance) respond(features, outcome);
   correct(features, outcome);
   add_landmarks(features, outcome);
   return outcome;
 }
 
-void EkfSlam::associate(std::span<const Feature> features, UpdateOutcome& outcome) {
+AssociatedObservation EkfSlam::associate(std::span<const Feature> features) {
   const PhaseTimer timer(times_, Phase::kAssociate);
   PairTest test({state_, pose_, ekf_, linearizer_, *parts_.measurement, parts_.registry}, features);
   parts_.associator->associate(features, parts_.registry, test, verdicts_);
-  accepted_.clear();
-  accepted_.reserve(features.size());
+  linearize_pairs(features);
+  return {features, verdicts_, accepted(), measured_};
+}
+
+void EkfSlam::linearize_pairs(std::span<const Feature> features) {
+  measured_.clear();
+  measured_.reserve(features.size());
   used_.clear();
-  for (std::size_t i = 0; i < features.size(); ++i) {
-    const Verdict& verdict = verdicts_[i];
-    if (verdict.outcome == Outcome::kGated) ++outcome.gated;
-    if (verdict.outcome == Outcome::kAmbiguous) ++outcome.ambiguous;
-    if (verdict.outcome != Outcome::kPaired) continue;
-    const BlockId landmark = parts_.registry.landmarks()[verdict.landmark].block;
-    linearizer_.linearize(*parts_.measurement, state_, pose_, landmark, features[i],
-                          accepted_.emplace_back());
-    used_.push_back(i);
-  }
+  const auto linearize = [&](Outcome outcome) {
+    for (std::size_t i = 0; i < features.size(); ++i) {
+      if (verdicts_[i].outcome != outcome) continue;
+      const BlockId landmark = parts_.registry.landmarks()[verdicts_[i].landmark].block;
+      linearizer_.linearize(*parts_.measurement, state_, pose_, landmark, features[i],
+                            measured_.emplace_back());
+      if (outcome == Outcome::kPaired) used_.push_back(i);
+    }
+  };
+  linearize(Outcome::kPaired);
+  if (parts_.disturbance) linearize(Outcome::kGated);
+}
+
+void EkfSlam::respond(std::span<const Feature> features, UpdateOutcome& outcome) {
+  DisturbanceResponse& response = *parts_.disturbance;
+  const Doubt doubt = response.answer({state_, pose_, ekf_, *parts_.measurement, parts_.registry,
+                                       [&] { return associate(features); }},
+                                      {features, verdicts_, accepted(), measured_});
+  if (doubt == Doubt::kNone) return;
+  if (response.began()) outcome.event = "disturbance";
+  if (response.became_lost()) outcome.event = "lost";
+  for (Verdict& verdict : verdicts_)
+    if (verdict.outcome == Outcome::kNew || doubt == Doubt::kUnexplained)
+      verdict.outcome = Outcome::kAmbiguous;
+  if (doubt == Doubt::kUnexplained) linearize_pairs(features);
 }
 
 void EkfSlam::correct(std::span<const Feature> features, UpdateOutcome& outcome) {
   const PhaseTimer timer(times_, Phase::kUpdate);
   const Eigen::Vector2d before = state_.estimate(pose_).head<2>();
-  const Correction correction = ekf_.correct(state_, pose_, accepted_, calibration_.considered());
+  const Correction correction = ekf_.correct(
+      state_, pose_, accepted(), disturbed() ? calibration_.all() : calibration_.considered());
   if (correction.applied) {
     linearizer_.corrected(state_, pose_, before);
-    outcome.accepted = static_cast<int>(accepted_.size());
+    outcome.accepted = static_cast<int>(used_.size());
     outcome.nis = correction.nis;
     outcome.nis_dof = correction.dof;
-    if (parts_.noise) {
-      ekf_.look_back(accepted_, postfits_);
+    if (parts_.noise && !disturbed()) {
+      ekf_.look_back(accepted(), postfits_);
       for (std::size_t i = 0; i < used_.size(); ++i) postfits_[i].feature = used_[i];
       parts_.noise->observe(features, postfits_);
     }
@@ -141,7 +166,10 @@ void EkfSlam::correct(std::span<const Feature> features, UpdateOutcome& outcome)
     // An innovation covariance that is not positive definite: nothing was used.
     for (Verdict& verdict : verdicts_)
       if (verdict.outcome == Outcome::kPaired) verdict.outcome = Outcome::kGated;
-    outcome.gated += static_cast<int>(accepted_.size());
+  }
+  for (const Verdict& verdict : verdicts_) {
+    if (verdict.outcome == Outcome::kGated) ++outcome.gated;
+    if (verdict.outcome == Outcome::kAmbiguous) ++outcome.ambiguous;
   }
 }
 

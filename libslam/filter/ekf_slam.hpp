@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include <Eigen/Core>
@@ -16,6 +17,7 @@
 #include <libslam/data/step_record.hpp>
 #include <libslam/filter/calibration_states.hpp>
 #include <libslam/filter/displacement_update.hpp>
+#include <libslam/filter/disturbance_response.hpp>
 #include <libslam/filter/ekf.hpp>
 #include <libslam/filter/linearizer.hpp>
 #include <libslam/measurement/measurement_model.hpp>
@@ -35,6 +37,7 @@ struct EkfSlamParts {
   /// `associator` may then be null.
   std::optional<DisplacementUpdate> displacement;
   std::unique_ptr<NoisePolicy> noise;  ///< null: R as the features bring it
+  std::optional<DisturbanceResponse> disturbance;  ///< absent: every observation is believed
   LandmarkRegistry registry{1, 0};
   BlockVector start;  ///< start pose, storage of the motion model's pose; empty: the origin
   BlockMatrix cov_start = BlockMatrix::Zero(3, 3);        ///< of its error, tangent coordinates
@@ -47,6 +50,7 @@ struct UpdateOutcome {
   int nis_dof = 0;
   int accepted = 0, gated = 0, ambiguous = 0, new_landmarks = 0;
   std::vector<Verdict> verdicts;  ///< one per feature
+  std::string event;  ///< what a run should tell: "disturbance", "lost", "relocalized"
 
   UpdateOutcome& operator+=(const UpdateOutcome& other);
 };
@@ -75,10 +79,16 @@ class EkfSlam {
   bool healthy() const;
 
  private:
+  bool disturbed() const { return parts_.disturbance && parts_.disturbance->disturbed(); }
+  std::span<const LinearizedMeasurement> accepted() const {
+    return std::span(measured_).first(used_.size());
+  }
   const DisplacementModel* displacement_model() const;
   UpdateOutcome measure_displacement(const Feature& reading);
   // The steps of an update, each leaving behind what the next one needs.
-  void associate(std::span<const Feature> features, UpdateOutcome& outcome);
+  AssociatedObservation associate(std::span<const Feature> features);
+  void linearize_pairs(std::span<const Feature> features);
+  void respond(std::span<const Feature> features, UpdateOutcome& outcome);
   void correct(std::span<const Feature> features, UpdateOutcome& outcome);
   void add_landmarks(std::span<const Feature> features, UpdateOutcome& outcome);
 
@@ -91,8 +101,8 @@ class EkfSlam {
   MotionStep step_;
   std::vector<Feature> adapted_;  // the features with the noise of the policy
   std::vector<Verdict> verdicts_;
-  std::vector<LinearizedMeasurement> accepted_;
-  std::vector<std::size_t> used_;  // the features behind `accepted_`
+  std::vector<LinearizedMeasurement> measured_;  // accepted ones, then rejected ones
+  std::vector<std::size_t> used_;                // the features behind the accepted ones
   std::vector<Postfit> postfits_;
   Initialization initialization_;
   PhaseTimes times_;

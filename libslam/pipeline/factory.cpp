@@ -1,3 +1,4 @@
+#include <optional>
 #include <stdexcept>
 #include <string>
 
@@ -58,6 +59,28 @@ Eigen::Matrix3d planar_covariance(double sigma_xy, double sigma_heading_deg) {
   return sigma.cwiseAbs2().asDiagonal();
 }
 
+std::optional<DisturbanceResponse> make_disturbance_response(const DisturbanceParameters& p,
+                                                             const BlockSpec& pose) {
+  if (p.response == "none") return std::nullopt;
+  DisturbanceOptions options;
+  if (p.response == "additive")
+    options.inflation = Inflation::kAdditive;
+  else if (p.response == "whole_state")
+    options.inflation = Inflation::kWholeState;
+  else if (p.response != "maximum_likelihood")
+    throw_unknown("response to a disturbance", p.response);
+  options.window = p.window;
+  options.trigger_probability = p.trigger_probability;
+  options.release_probability = p.release_probability;
+  options.hold = p.hold_updates;
+  const int positions = pose.chart == Chart::kSE3 ? 3 : 2;
+  options.sigma =
+      BlockVector::Constant(tangent_dimension(pose), p.sigma_heading_deg * kPi / 180.0);
+  options.sigma.head(positions).setConstant(p.sigma_xy);
+  options.max_factor = p.max_factor;
+  return DisturbanceResponse(Disturbance(options), p.near_landmark, p.lost_after);
+}
+
 }  // namespace
 
 std::unique_ptr<MotionModel> make_motion_model(const MotionParameters& motion,
@@ -83,6 +106,7 @@ EkfSlamParts make_filter_parts(const Parameters& p, const TrueState* truth) {
     parts.measurement = make_measurement(p);
     parts.associator = make_associator(p, *parts.measurement);
   }
+  parts.disturbance = make_disturbance_response(p.policies.disturbance, parts.motion->pose_spec());
   parts.frame = make_error_frame(p.filter.error_frame);
   parts.linearization = make_linearization_point(p, truth);
   parts.registry =

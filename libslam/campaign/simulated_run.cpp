@@ -71,9 +71,8 @@ StepRecord start_of(const LogStep& step) {
 class Lane {
  public:
   Lane(const Variant& variant, const TrueState& truth, double diverged_beyond)
-      : identity_(variant.parameters.association.uses_identities()
-                      ? LandmarkIdentity::known
-                      : LandmarkIdentity::unknown),
+      : identity_(variant.parameters.association.uses_identities() ? LandmarkIdentity::known
+                                                                   : LandmarkIdentity::unknown),
         diverged_beyond_(diverged_beyond) {
     attempt([&] { contestant_.emplace(variant, truth); });
   }

@@ -1,3 +1,4 @@
+#include <optional>
 #include <stdexcept>
 #include <string>
 
@@ -72,11 +73,11 @@ std::vector<NoiseComponent> noise_components(const Parameters& p) {
   const NoiseAdaptationParameters& n = p.policies.noise_adaptation;
   constexpr double kDegree = kPi / 180.0;
   if (p.measurement.model == "range_bearing")
-    return {{"range", p.measurement.sigma_range, n.min_sigma_range, n.max_sigma_range,
-             n.range_growth_per_m},
-            {"bearing", p.measurement.sigma_bearing_deg * kDegree,
-             n.min_sigma_bearing_deg * kDegree, n.max_sigma_bearing_deg * kDegree,
-             n.bearing_growth_per_m}};
+    return {
+        {"range", p.measurement.sigma_range, n.min_sigma_range, n.max_sigma_range,
+         n.range_growth_per_m},
+        {"bearing", p.measurement.sigma_bearing_deg * kDegree, n.min_sigma_bearing_deg * kDegree,
+         n.max_sigma_bearing_deg * kDegree, n.bearing_growth_per_m}};
   throw_unknown("measurement model of a noise adaptation", p.measurement.model);
 }
 
@@ -113,6 +114,27 @@ std::optional<MapStart> make_map_start(const MapParameters& map) {
   return start;
 }
 
+std::optional<DisturbanceResponse> make_disturbance_response(const DisturbanceParameters& p,
+                                                             const BlockSpec& pose) {
+  if (p.response == "none") return std::nullopt;
+  DisturbanceOptions options;
+  if (p.response == "additive")
+    options.inflation = Inflation::kAdditive;
+  else if (p.response == "whole_state")
+    options.inflation = Inflation::kWholeState;
+  else if (p.response != "maximum_likelihood")
+    throw_unknown("response to a disturbance", p.response);
+  options.window = p.window;
+  options.trigger_probability = p.trigger_probability;
+  options.release_probability = p.release_probability;
+  options.hold = p.hold_updates;
+  const int positions = pose.chart == Chart::kSE3 ? 3 : 2;
+  options.sigma = BlockVector::Constant(tangent_dimension(pose), p.sigma_heading_deg * kPi / 180.0);
+  options.sigma.head(positions).setConstant(p.sigma_xy);
+  options.max_factor = p.max_factor;
+  return DisturbanceResponse(Disturbance(options), p.near_landmark, p.lost_after);
+}
+
 }  // namespace
 
 std::unique_ptr<MotionModel> make_motion_model(const MotionParameters& motion,
@@ -139,6 +161,7 @@ EkfSlamParts make_filter_parts(const Parameters& p, const TrueState* truth) {
     parts.associator = make_associator(p, *parts.measurement);
     parts.process = make_process_policy(p, *parts.measurement);
   }
+  parts.disturbance = make_disturbance_response(p.policies.disturbance, parts.motion->pose_spec());
   parts.frame = make_error_frame(p.filter.error_frame);
   parts.linearization = make_linearization_point(p, truth);
   parts.noise = make_noise_policy(p);

@@ -92,7 +92,8 @@ void SageHusa::bound(MeasurementMatrix& cov) const {
   for (Index j = 0; j < cov.rows(); ++j) {
     const NoiseComponent& c = components_[static_cast<std::size_t>(j)];
     if (!(cov(j, j) > 0.0)) continue;  // an innovation form that nobody repairs
-    const double sigma = std::sqrt(cov(j, j)), scale = std::clamp(sigma, c.floor, c.ceiling) / sigma;
+    const double sigma = std::sqrt(cov(j, j)),
+                 scale = std::clamp(sigma, c.floor, c.ceiling) / sigma;
     if (scale == 1.0) continue;
     cov.row(j) *= scale;
     cov.col(j) *= scale;
@@ -152,8 +153,8 @@ void SageHusa::blend(Channel& channel) const {
   const double d = (1.0 - parameters_.forgetting) / (1.0 - channel.past);
   channel.past *= parameters_.forgetting;
   const double share = d / channel.count;
-  channel.factor = (1.0 - d) * channel.factor +
-                   0.5 * share * (channel.sum + channel.sum.transpose()).eval();
+  channel.factor =
+      (1.0 - d) * channel.factor + 0.5 * share * (channel.sum + channel.sum.transpose()).eval();
   if (parameters_.method == "classic" && parameters_.eigenvalue_floor > 0.0)
     channel.factor = raised(channel.factor, parameters_.eigenvalue_floor);
   if (parameters_.bias) channel.bias += share * channel.sum_innovation;

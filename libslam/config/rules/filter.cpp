@@ -80,6 +80,28 @@ void check_process_adaptation(const Parameters& p, Conflicts& conflicts) {
   }
 }
 
+void check_disturbance(const Parameters& p, Conflicts& conflicts) {
+  const DisturbanceParameters& d = p.policies.disturbance;
+  if (d.response == "none") {
+    return;
+  }
+  if (p.measurement.model == "sensor_displacement") {
+    conflicts.push_back({{"policies.disturbance.response", "measurement.model"},
+                         "a disturbance is noticed by landmarks; without a map nothing tells it "
+                         "from a wrong displacement"});
+  }
+  if (d.trigger_probability >= 1.0 || d.release_probability >= 1.0) {
+    conflicts.push_back(
+        {{"policies.disturbance.trigger_probability", "policies.disturbance.release_probability"},
+         "at probability 1 no observation is ever beyond the level"});
+  }
+  if (d.release_probability > d.trigger_probability) {
+    conflicts.push_back(
+        {{"policies.disturbance.release_probability", "policies.disturbance.trigger_probability"},
+         "a disturbance would end where it begins; release it at a lower level"});
+  }
+}
+
 }  // namespace
 
 void check_policies(const Parameters& p, Conflicts& conflicts) {
@@ -89,6 +111,7 @@ void check_policies(const Parameters& p, Conflicts& conflicts) {
   }
   check_noise_adaptation(p, conflicts);
   check_process_adaptation(p, conflicts);
+  check_disturbance(p, conflicts);
 }
 
 }  // namespace libslam

@@ -222,6 +222,11 @@ void EkfSlam::add_landmarks(std::span<const Feature> features, UpdateOutcome& ou
     if (verdict.outcome == Outcome::kPaired) parts_.registry.record_sighting(verdict.landmark);
   for (std::size_t i = 0; i < features.size(); ++i) {
     if (verdicts_[i].outcome != Outcome::kNew) continue;
+    if (!parts_.measurement->initializable(features[i])) {
+      verdicts_[i].outcome = Outcome::kAmbiguous;
+      ++outcome.ambiguous;
+      continue;
+    }
     linearizer_.initialize(*parts_.measurement, state_, pose_, features[i], initialization_);
     const BlockId block = state_.augment(parts_.measurement->landmark_spec(), initialization_);
     linearizer_.added(state_, pose_, block, features[i].id);

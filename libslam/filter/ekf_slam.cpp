@@ -67,11 +67,16 @@ EkfSlam::EkfSlam(EkfSlamParts parts)
 void EkfSlam::start_in_map() {
   enter_map(*parts_.map,
             {state_, pose_, calibration_, parts_.registry, parts_.measurement->landmark_spec()});
-  landmarks_given_ = parts_.map->landmarks_given;
+  give_landmarks(parts_.map->landmarks_given);
   parts_.map.reset();
-  if (!landmarks_given_) return;
-  for (const RegisteredLandmark& landmark : parts_.registry.landmarks())
-    if (!state_.is_constant(landmark.block)) considered_.push_back(landmark.block);
+}
+
+void EkfSlam::give_landmarks(bool given) {
+  landmarks_given_ = given;
+  considered_.clear();
+  if (given)
+    for (const RegisteredLandmark& landmark : parts_.registry.landmarks())
+      if (!state_.is_constant(landmark.block)) considered_.push_back(landmark.block);
   given_ = considered_.size();
 }
 
@@ -235,7 +240,9 @@ void EkfSlam::add_landmarks(std::span<const Feature> features, UpdateOutcome& ou
     ++outcome.new_landmarks;
   }
   outcome.verdicts = verdicts_;
-  for (const BlockId given_up : parts_.registry.record_update()) state_.remove(given_up);
+  const std::vector<BlockId> given_up = parts_.registry.record_update();
+  for (const BlockId block : given_up) state_.remove(block);
+  if (landmarks_given_ && !given_up.empty()) give_landmarks(true);
 }
 
 std::vector<AdaptedNoise> EkfSlam::noise() const {

@@ -72,6 +72,10 @@ class EkfSlam {
   /// the displacement since the reading before, gates and corrects.
   UpdateOutcome update(std::span<const Feature> features);
 
+  /// Localization from now on: the landmarks keep their estimates and covariances, which count in
+  /// every innovation, and none is added (MapStart::landmarks_given); or SLAM again.
+  void give_landmarks(bool given);
+
   const GaussianState& state() const { return state_; }
   BlockId pose() const { return pose_; }
   const LandmarkRegistry& registry() const { return parts_.registry; }

@@ -24,7 +24,8 @@ struct Match {
 class Compatibility {
  public:
   virtual ~Compatibility() = default;
-  /// Nothing if the pair is certainly farther apart than `limit` (squared Mahalanobis distance).
+  /// Nothing if the pair is certainly farther apart than `limit` (squared Mahalanobis distance), or
+  /// impossible: the sensor could not see the landmark.
   virtual std::optional<Match> test(std::size_t feature, std::size_t landmark, double limit) = 0;
 };
 

@@ -1,3 +1,7 @@
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+
 #include <libslam/association/landmark_registry.hpp>
 
 namespace libslam {
@@ -15,6 +19,16 @@ void LandmarkRegistry::add(BlockId block, std::int64_t id) {
   if (id == kNoIdentity) id = next_number_++;
   by_id_[id] = landmarks_.size();
   landmarks_.push_back({block, id, 1, 0, confirm_after_ <= 1});
+}
+
+void LandmarkRegistry::restore(const RegisteredLandmark& landmark) {
+  if (landmark.id == kNoIdentity || !by_id_.emplace(landmark.id, landmarks_.size()).second)
+    throw std::invalid_argument("landmark " + std::to_string(landmark.id) + " cannot be restored");
+  landmarks_.push_back(landmark);
+}
+
+void LandmarkRegistry::number_from(std::int64_t number) {
+  next_number_ = std::max(next_number_, number);
 }
 
 void LandmarkRegistry::record_sighting(std::size_t landmark) {

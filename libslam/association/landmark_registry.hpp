@@ -34,6 +34,13 @@ class LandmarkRegistry {
 
   /// Adds a landmark seen for the first time; without an identity it gets the next running number.
   void add(BlockId block, std::int64_t id);
+  /// Adds a landmark of an earlier run as it was. Throws std::invalid_argument if its identity is
+  /// taken or none.
+  void restore(const RegisteredLandmark& landmark);
+  /// The next running number.
+  std::int64_t next_number() const { return next_number_; }
+  /// Running numbers go on from `number` or beyond.
+  void number_from(std::int64_t number);
   void record_sighting(std::size_t landmark);
   /// Counts one update of the filter; removes and returns the landmarks to give up.
   std::vector<BlockId> record_update();

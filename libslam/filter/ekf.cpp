@@ -69,7 +69,8 @@ Index Ekf::stack(const GaussianState& state, std::span<const LinearizedMeasureme
                                   std::to_string(measurement.cov.rows()) + " x " +
                                   std::to_string(measurement.cov.cols()) + " covariance");
     const std::size_t first = placed_.size();
-    for (const auto& column : measurement.wrt) placed_.push_back(place(state, column, rows));
+    for (const auto& column : measurement.wrt)
+      if (!state.is_constant(column.block)) placed_.push_back(place(state, column, rows));
     rows_.push_back({row, rows, std::span(placed_.data() + first, placed_.size() - first)});
     nu_.segment(row, rows) = measurement.innovation;
     row += rows;
@@ -123,6 +124,34 @@ Correction Ekf::correct(GaussianState& state, BlockId pose,
   state.covariance().gain(s_.topLeftCorner(m, m), white_.head(m), considered_, delta_.head(n));
   state.covariance().correct(frame_->retract(state, pose, delta_.head(n)));
   return {true, nis, static_cast<int>(m)};
+}
+
+// With W = L^-1 [0 .. R_i .. 0]^T, zero above the rows of i:  e_i = W^T L^-1 nu, C_i = R_i - W^T W.
+void Ekf::look_back(std::span<const LinearizedMeasurement> measurements,
+                    std::vector<Postfit>& out) {
+  Index m = 0;
+  for (const auto& measurement : measurements) m += measurement.innovation.size();
+  if (divided_.rows() < m) divided_.resize(2 * m, kMaxMeasurementDimension);
+  out.resize(measurements.size());
+  Index row = 0;
+  for (std::size_t i = 0; i < measurements.size(); ++i) {
+    const LinearizedMeasurement& measurement = measurements[i];
+    const Index rows = measurement.innovation.size(), behind = m - row;
+    auto w = divided_.topLeftCorner(behind, rows);
+    w.setZero();
+    w.topRows(rows) = measurement.cov;
+    s_.block(row, row, behind, behind).triangularView<Eigen::Lower>().solveInPlace(w);
+    const auto lower = s_.block(row, 0, rows, row + rows);
+    Postfit& postfit = out[i];
+    postfit.innovation = measurement.innovation;
+    postfit.cov_innovation = lower.leftCols(row) * lower.leftCols(row).transpose();
+    const MeasurementMatrix own = lower.rightCols(rows).triangularView<Eigen::Lower>();
+    postfit.cov_innovation.noalias() += own * own.transpose();
+    postfit.residual.noalias() = w.transpose() * white_.segment(row, behind);
+    postfit.cov_predicted = measurement.cov;
+    postfit.cov_predicted.noalias() -= w.transpose() * w;
+    row += rows;
+  }
 }
 
 }  // namespace libslam

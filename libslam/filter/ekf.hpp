@@ -15,6 +15,7 @@
 
 #include <Eigen/Core>
 
+#include <libslam/data/postfit.hpp>
 #include <libslam/state/error_frame.hpp>
 #include <libslam/state/gaussian_state.hpp>
 #include <libslam/state/linearization.hpp>
@@ -50,10 +51,15 @@ class Ekf {
   Innovation innovate(const GaussianState& state, const LinearizedMeasurement& measurement);
 
   /// Joint update with all measurements stacked. `pose` is the reference pose of the error frame.
-  /// Blocks in `considered` keep estimate and covariance, but their uncertainty counts.
+  /// Blocks in `considered` keep estimate and covariance, but their uncertainty counts. Derivatives
+  /// with respect to constants of the state are left out.
   Correction correct(GaussianState& state, BlockId pose,
                      std::span<const LinearizedMeasurement> measurements,
                      std::span<const BlockId> considered = {});
+
+  /// After a correction that was applied, with the same measurements: what it left behind of each,
+  /// without the position of its feature. Exact where no block was considered.
+  void look_back(std::span<const LinearizedMeasurement> measurements, std::vector<Postfit>& out);
 
  private:
   /// Stacks rows_ and nu_; returns the number of rows.
@@ -70,6 +76,7 @@ class Ekf {
   std::vector<JacobianRows> rows_;
   std::vector<Eigen::Index> considered_;
   Eigen::MatrixXd s_;
+  Eigen::MatrixXd divided_;  // L^-1 R of one measurement
   Eigen::VectorXd nu_, white_, delta_;
 };
 

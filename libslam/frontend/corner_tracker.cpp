@@ -17,7 +17,7 @@ constexpr int kLevels = 3;
 /// A corner per the strongest one of the image.
 constexpr double kQuality = 0.002;
 
-cv::Point2f left_pixel(const StereoPoint& point) {
+cv::Point2f left_pixel(const StereoMatch& point) {
   return {static_cast<float>(point.z[0]), static_cast<float>(point.z[1] + 0.5 * point.row_error)};
 }
 
@@ -58,7 +58,7 @@ class CornerTracker final : public PointTracker {
     std::vector<Sighting> sightings;
     for (std::size_t i = 0; i < left.size(); ++i) {
       if (!found[i] || !paired[i]) continue;
-      auto point = make_stereo_point(parameters_, left[i], right[i], 1.0);
+      auto point = make_stereo_match(parameters_, left[i], right[i]);
       if (!point) continue;
       point->appearance = tracks.tracks()[index[i]].last.appearance;
       count(*point, figures);
@@ -83,7 +83,7 @@ class CornerTracker final : public PointTracker {
     const auto appearances = describe_corners(pair.left, left);
     for (std::size_t i = 0; i < left.size(); ++i) {
       if (!good[i] || cv::norm(right[i] - coarse[i]) > 1.5) continue;
-      auto point = make_stereo_point(parameters_, left[i], right[i], 1.0);
+      auto point = make_stereo_match(parameters_, left[i], right[i]);
       if (!point) continue;
       point->appearance = appearances[i];
       count(*point, figures);
@@ -112,7 +112,7 @@ class CornerTracker final : public PointTracker {
     return corners;
   }
 
-  static void count(const StereoPoint& point, PairFigures& figures) {
+  static void count(const StereoMatch& point, PairFigures& figures) {
     ++figures.matched;
     figures.row_error += std::abs(point.row_error);
   }

@@ -19,6 +19,7 @@ constexpr double kSearch = 0.12;
 struct Candidate {
   cv::Point2f left, right;
   double scale = 1.0;
+  bool placed = false;  ///< where the track was, or it begins here
   std::shared_ptr<const Descriptor> appearance;
 };
 
@@ -37,7 +38,7 @@ struct Nearest {
   }
 };
 
-cv::Point2f left_pixel(const StereoPoint& point) {
+cv::Point2f left_pixel(const StereoMatch& point) {
   return {static_cast<float>(point.z[0]), static_cast<float>(point.z[1] + 0.5 * point.row_error)};
 }
 
@@ -51,14 +52,17 @@ class DescriptorTracker final : public PointTracker {
     std::vector<Candidate> candidates = find_candidates(pair, figures);
     const std::vector<int> partner = find_partners(*pair.camera, tracks, candidates);
     refine_by_past(pair.left, tracks, partner, candidates);
-    const auto points = make_points(pair, candidates);
+    auto points = make_points(pair, candidates);
     std::vector<Sighting> sightings;
     std::vector<bool> used(points.size(), false);
     for (std::size_t i = 0; i < points.size(); ++i) {
       if (!points[i]) continue;
       ++figures.matched;
       figures.row_error += std::abs(points[i]->row_error);
-      if (partner[i] >= 0) sightings.push_back({static_cast<std::size_t>(partner[i]), *points[i]});
+      if (partner[i] < 0) continue;
+      if (!candidates[i].placed)  // found anew, twice
+        points[i]->place = std::sqrt(2.0) * candidates[i].scale * parameters_.sigma_pixel;
+      sightings.push_back({static_cast<std::size_t>(partner[i]), *points[i]});
     }
     if (figures.matched > 0) figures.row_error /= figures.matched;
     enter(*pair.camera, tracks, points, partner, sightings, figures);
@@ -70,13 +74,30 @@ class DescriptorTracker final : public PointTracker {
   std::vector<Candidate> find_candidates(const RectifiedPair& pair, PairFigures& figures) const {
     const DetectedPoints left = detector_.detect(pair.left), right = detector_.detect(pair.right);
     figures.detected = static_cast<int>(left.points.size());
+    std::vector<std::optional<cv::Point2f>> partners(left.points.size());
+    for (const auto& [i, j] : match_rows(parameters_, detector_, left, right))
+      partners[static_cast<std::size_t>(i)] = right.points[static_cast<std::size_t>(j)].pt;
+    search_the_rest(pair, left.points, partners);
     std::vector<Candidate> candidates;
-    for (const auto& [i, j] : match_rows(parameters_, detector_, left, right)) {
-      const auto l = static_cast<std::size_t>(i), r = static_cast<std::size_t>(j);
-      candidates.push_back({left.points[l].pt, right.points[r].pt,
-                            detector_.scale_of(left.points[l]), left.descriptors[l]});
-    }
+    for (std::size_t i = 0; i < partners.size(); ++i)
+      if (partners[i])
+        candidates.push_back({left.points[i].pt, *partners[i],
+                              detector_.scale_of(left.points[i]), false, left.descriptors[i]});
     return candidates;
+  }
+
+  /// Detectors do not find every point of one image in the other.
+  void search_the_rest(const RectifiedPair& pair, const std::vector<cv::KeyPoint>& points,
+                       std::vector<std::optional<cv::Point2f>>& partners) const {
+    std::vector<cv::Point2f> alone;
+    std::vector<std::size_t> index;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if (partners[i]) continue;
+      alone.push_back(points[i].pt);
+      index.push_back(i);
+    }
+    const auto found = search_rows(parameters_, pair.left, pair.right, alone);
+    for (std::size_t k = 0; k < index.size(); ++k) partners[index[k]] = found[k];
   }
 
   /// For every candidate its track, or -1: near the expected place, each the best of the other.
@@ -132,11 +153,11 @@ class DescriptorTracker final : public PointTracker {
       if (!good[k] || cv::norm(moved) > kRefinement * candidate.scale) continue;
       candidate.left = now[k];
       candidate.right += moved;
-      candidate.scale = 1.0;
+      candidate.placed = true;
     }
   }
 
-  std::vector<std::optional<StereoPoint>> make_points(
+  std::vector<std::optional<StereoMatch>> make_points(
       const RectifiedPair& pair, const std::vector<Candidate>& candidates) const {
     std::vector<cv::Point2f> left, right;
     for (const Candidate& candidate : candidates) {
@@ -144,19 +165,19 @@ class DescriptorTracker final : public PointTracker {
       right.push_back(candidate.right);
     }
     const std::vector<bool> good = refine_positions(pair.left, pair.right, left, right, 0);
-    std::vector<std::optional<StereoPoint>> points(candidates.size());
+    std::vector<std::optional<StereoMatch>> points(candidates.size());
     for (std::size_t i = 0; i < candidates.size(); ++i) {
       const Candidate& candidate = candidates[i];
       const double moved = cv::norm(right[i] - candidate.right);
       if (!good[i] || moved > kRefinement * std::max(1.0, candidate.scale)) continue;
-      points[i] = make_stereo_point(parameters_, left[i], right[i], candidate.scale);
+      points[i] = make_stereo_match(parameters_, left[i], right[i]);
       if (points[i]) points[i]->appearance = candidate.appearance;
     }
     return points;
   }
 
   static void enter(const StereoCamera& camera, PointTracks& tracks,
-                    const std::vector<std::optional<StereoPoint>>& points,
+                    const std::vector<std::optional<StereoMatch>>& points,
                     const std::vector<int>& partner, const std::vector<Sighting>& sightings,
                     PairFigures& figures) {
     const std::vector<bool> accepted = tracks.confirm(camera, sightings);

@@ -52,7 +52,7 @@ std::vector<bool> PointTracks::confirm(const StereoCamera& camera,
   return motion_->agrees;
 }
 
-void PointTracks::begin(const StereoCamera& camera, const StereoPoint& point) {
+void PointTracks::begin(const StereoCamera& camera, const StereoMatch& point) {
   PointTrack track;
   track.id = next_id_++;
   track.founding = founding_;

@@ -9,7 +9,7 @@
 #include <Eigen/Geometry>
 
 #include <libslam/frontend/stereo_motion.hpp>
-#include <libslam/frontend/stereo_point.hpp>
+#include <libslam/frontend/stereo_match.hpp>
 
 namespace libslam {
 
@@ -19,7 +19,7 @@ struct PointTrack {
   int unseen = 0;         ///< pairs since the last sighting
   bool founding = false;  ///< began where there was no motion to check it by
   bool delivered = false;  ///< the filter has it
-  StereoPoint last;       ///< as it was sighted last
+  StereoMatch last;       ///< as it was sighted last
   Eigen::Vector3d p = Eigen::Vector3d::Zero();      ///< in the present camera frame [m]
   Eigen::Matrix3d cov = Eigen::Matrix3d::Zero();    ///< of `p`
 };
@@ -27,7 +27,7 @@ struct PointTrack {
 /// A sighting that some matcher believes to be one of a track.
 struct Sighting {
   std::size_t track = 0;  ///< position in PointTracks::tracks
-  StereoPoint point;
+  StereoMatch point;
 };
 
 /// Tracks live as long as their sightings fit one rigid motion of the camera from pair to pair. A
@@ -48,7 +48,7 @@ class PointTracks {
   /// accepted. Without a motion that enough of them support, every track ends.
   std::vector<bool> confirm(const StereoCamera& camera, const std::vector<Sighting>& sightings);
   /// Begins a track.
-  void begin(const StereoCamera& camera, const StereoPoint& point);
+  void begin(const StereoCamera& camera, const StereoMatch& point);
 
   /// Of the last pair; nothing where none was found.
   const std::optional<StereoMotion>& motion() const { return motion_; }

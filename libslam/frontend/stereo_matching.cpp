@@ -135,11 +135,10 @@ std::vector<bool> refine_positions(const cv::Mat& from, const cv::Mat& to,
   return good;
 }
 
-std::optional<StereoPoint> make_stereo_point(const StereoFrontendParameters& parameters,
-                                             const cv::Point2f& left, const cv::Point2f& right,
-                                             double scale) {
-  StereoPoint point;
-  point.sigma = scale * parameters.sigma_pixel;
+std::optional<StereoMatch> make_stereo_match(const StereoFrontendParameters& parameters,
+                                             const cv::Point2f& left, const cv::Point2f& right) {
+  StereoMatch point;
+  point.sigma = parameters.sigma_pixel;
   point.row_error = static_cast<double>(left.y) - static_cast<double>(right.y);
   point.z = {left.x, 0.5 * (static_cast<double>(left.y) + static_cast<double>(right.y)),
              static_cast<double>(left.x) - static_cast<double>(right.x)};

@@ -8,7 +8,7 @@
 
 #include <libslam/config/parameters/stereo.hpp>
 #include <libslam/frontend/feature_detection.hpp>
-#include <libslam/frontend/stereo_point.hpp>
+#include <libslam/frontend/stereo_match.hpp>
 
 namespace libslam {
 
@@ -35,8 +35,7 @@ std::vector<bool> refine_positions(const cv::Mat& from, const cv::Mat& to,
 
 /// The stereo point of a pair of pixels; nothing if the rows differ by more than the tolerance, the
 /// disparity is not in (0, max_disparity], or too small to tell a depth.
-std::optional<StereoPoint> make_stereo_point(const StereoFrontendParameters& parameters,
-                                             const cv::Point2f& left, const cv::Point2f& right,
-                                             double scale);
+std::optional<StereoMatch> make_stereo_match(const StereoFrontendParameters& parameters,
+                                             const cv::Point2f& left, const cv::Point2f& right);
 
 }  // namespace libslam

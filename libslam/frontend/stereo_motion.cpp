@@ -116,7 +116,7 @@ double disagreement(const StereoCamera& camera, const Eigen::Isometry3d& T_after
   return r.e.dot(r.information * r.e);
 }
 
-void locate(const StereoCamera& camera, const StereoPoint& point, Eigen::Vector3d& p,
+void locate(const StereoCamera& camera, const StereoMatch& point, Eigen::Vector3d& p,
             Eigen::Matrix3d& cov) {
   p = triangulate(camera, point.z);
   const Eigen::Matrix3d G = projection_jacobian(camera, p).inverse();

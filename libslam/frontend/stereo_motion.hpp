@@ -7,7 +7,7 @@
 
 #include <Eigen/Geometry>
 
-#include <libslam/frontend/stereo_point.hpp>
+#include <libslam/frontend/stereo_match.hpp>
 
 namespace libslam {
 
@@ -31,7 +31,7 @@ double disagreement(const StereoCamera& camera, const Eigen::Isometry3d& T_after
                     const PointPair& pair);
 
 /// Position and covariance of a stereo point.
-void locate(const StereoCamera& camera, const StereoPoint& point, Eigen::Vector3d& p,
+void locate(const StereoCamera& camera, const StereoMatch& point, Eigen::Vector3d& p,
             Eigen::Matrix3d& cov);
 
 /// Consensus over triples (absolute orientation; Fischler & Bolles 1981), then Gauss-Newton on

@@ -12,25 +12,52 @@ InputParameters reader_input(InputParameters input) {
   return input;
 }
 
+void fill_pose(const GaussianState& state, BlockId pose, StepRecord& record) {
+  const auto x = state.estimate(pose);
+  if (state.spec(pose).chart == Chart::kSE2) {
+    record.pose = x;
+    record.cov = state.covariance_of(pose);
+    return;
+  }
+  record.spatial.emplace();
+  record.spatial->pose = {x.head<3>(), Eigen::Quaterniond(x[6], x[3], x[4], x[5])};
+  record.spatial->cov = state.covariance_of(pose);
+  record.pose = shadow_of(record.spatial->pose);
+  record.cov = shadow_covariance(*record.spatial);
+}
+
 }  // namespace
 
 Pipeline::Pipeline(const Parameters& parameters, const TrueState* truth)
     : odometry_(reader_input(parameters.input)),
       ignore_odometry_(parameters.input.odometry == "none"),
+      keeps_velocity_(parameters.motion.model == "constant_twist"),
       frontend_(make_frontend(parameters)),
       schedule_(parameters.policies.update_period_s, parameters.policies.update_every_n),
       filter_(make_filter_parts(parameters, truth)) {}
 
 StepRecord Pipeline::process(const LogStep& step) {
+  const bool moves = step.action || step.twist || keeps_velocity_;
   std::optional<MotionAction> action;
-  if (step.action && !ignore_odometry_) action = odometry_.read(step);
-  if (step.action) propagate(action ? &*action : nullptr);
+  if (keeps_velocity_)
+    action = keep_velocity(step.time);
+  else if (moves && !ignore_odometry_)
+    action = odometry_.read(step);
+  if (moves) propagate(action ? &*action : nullptr);
   return update(step);
 }
 
 StepRecord Pipeline::process_frame(const LogStep& step) {
   propagate(nullptr);
   return update(step);
+}
+
+MotionAction Pipeline::keep_velocity(double time) {
+  MotionAction action;
+  action.time = time;
+  action.dt = time_ ? time - *time_ : 0.0;
+  time_ = time;
+  return action;
 }
 
 void Pipeline::propagate(const MotionAction* action) {
@@ -55,8 +82,7 @@ StepRecord Pipeline::update(const LogStep& step) {
   StepRecord record;
   record.index = step.index;
   record.time = step.time;
-  record.pose = filter_.state().estimate(filter_.pose());
-  record.cov = filter_.state().covariance_of(filter_.pose());
+  fill_pose(filter_.state(), filter_.pose(), record);
   record.nis = last_update_.nis;
   record.nis_dof = last_update_.nis_dof;
   record.accepted = last_update_.accepted;

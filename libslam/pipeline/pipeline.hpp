@@ -2,6 +2,7 @@
 // One step of a log through all parts: odometry -> filter <- association <- features.
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -49,15 +50,18 @@ class Pipeline {
 
  private:
   void propagate(const MotionAction* action);
+  /// The motion of a body that keeps its velocity until `time`.
+  MotionAction keep_velocity(double time);
   StepRecord update(const LogStep& step);
 
   OdometryReader odometry_;
-  bool ignore_odometry_;
+  bool ignore_odometry_, keeps_velocity_;
   std::unique_ptr<Frontend> frontend_;
   UpdateSchedule schedule_;
   EkfSlam filter_;
   FilterObserver* observer_ = nullptr;
   UpdateOutcome last_update_;
+  std::optional<double> time_;  // of the step before, for motion without odometry
   std::vector<FeatureBatch> batches_;
 };
 

@@ -5,6 +5,7 @@
 
 #include <libslam/config/description.hpp>
 #include <libslam/config/parameters/stereo.hpp>
+#include <libslam/config/parameters/stereo_noise.hpp>
 
 namespace libslam {
 
@@ -19,14 +20,14 @@ struct FrontendParameters {
   void describe(auto& v) {
     v.value("source", source,
             {"",
-             "Where features come from: range-bearing observations, the path that a sensor "
-             "reports of itself (odometry observations labelled input.sensor_label), points of "
-             "stereo images, or tags in stereo images.",
+             "Where features come from: range-bearing observations, the path that a sensor reports "
+             "of itself (odometry observations labelled input.sensor_label), logged points of a "
+             "stereo camera, points of its images, or tags in its images.",
              0,
              0,
-             {"range_bearing", "sensor_path", "stereo_images", "fiducials"}});
+             {"range_bearing", "sensor_path", "stereo_points", "stereo_images", "fiducials"}});
     v.value("min_range", min_range,
-            {"m", "Nearer observations are ignored; of images: depth along the axis.", 0});
+            {"m", "Nearer observations are ignored; of stereo points by their depth.", 0});
     v.value("max_range", max_range, {"m", "Farther observations are ignored.", 0});
     v.section("stereo", stereo);
     v.section("fiducials", fiducials);
@@ -41,14 +42,17 @@ struct MeasurementParameters {
   double sigma_bearing_deg = 1.0;
   double sigma_displacement_xy = 0.001;
   double sigma_displacement_heading_deg = 0.1;
+  StereoNoiseParameters stereo;
 
   void describe(auto& v) {
-    v.value("model", model,
-            {"",
-             "Measurement model: of landmarks, or of the displacement of a sensor (no map).",
-             0,
-             0,
-             {"range_bearing", "sensor_displacement"}});
+    v.value(
+        "model", model,
+        {"",
+         "Measurement model: of landmarks by range and bearing or as points of a stereo camera, "
+         "or of the displacement of a sensor (no map).",
+         0,
+         0,
+         {"range_bearing", "stereo_point", "sensor_displacement"}});
     v.value(
         "noise", noise,
         {"",
@@ -64,6 +68,7 @@ struct MeasurementParameters {
             {"m", "Standard deviation of a sensor's displacement along x and y, each.", 1e-9});
     v.value("sigma_displacement_heading_deg", sigma_displacement_heading_deg,
             {"deg", "Standard deviation of the turn of a displacement.", 1e-9});
+    v.section("stereo", stereo);
   }
 };
 

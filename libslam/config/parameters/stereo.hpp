@@ -14,10 +14,10 @@ struct StereoFrontendParameters {
   int detected = 1000;
   int delivered = 200;
   double sigma_pixel = 0.5;
-  double row_tolerance = 1.5;
+  double row_tolerance = 2.0;
   double max_disparity = 128.0;
-  double max_distance = 0.25;
-  double distance_ratio = 0.85;
+  double max_distance = 0.3;
+  double distance_ratio = 0.9;
   int min_sightings = 2;
   int memory = 2;
 

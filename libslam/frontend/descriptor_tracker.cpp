@@ -81,8 +81,8 @@ class DescriptorTracker final : public PointTracker {
     std::vector<Candidate> candidates;
     for (std::size_t i = 0; i < partners.size(); ++i)
       if (partners[i])
-        candidates.push_back({left.points[i].pt, *partners[i],
-                              detector_.scale_of(left.points[i]), false, left.descriptors[i]});
+        candidates.push_back({left.points[i].pt, *partners[i], detector_.scale_of(left.points[i]),
+                              false, left.descriptors[i]});
     return candidates;
   }
 

@@ -39,9 +39,8 @@ std::shared_ptr<const Descriptor> to_descriptor(const cv::Mat& descriptors, int 
 }  // namespace
 
 void spread(std::vector<cv::KeyPoint>& points, cv::Size size, int budget) {
-  std::sort(points.begin(), points.end(), [](const cv::KeyPoint& a, const cv::KeyPoint& b) {
-    return order_of(a) < order_of(b);
-  });
+  std::sort(points.begin(), points.end(),
+            [](const cv::KeyPoint& a, const cv::KeyPoint& b) { return order_of(a) < order_of(b); });
   const double side =
       std::max(8.0, std::sqrt(static_cast<double>(size.area()) * kPointsPerCell / budget));
   const int columns = static_cast<int>(size.width / side) + 1;

@@ -12,9 +12,9 @@ namespace libslam {
 
 /// What one pair of images gave.
 struct PairFigures {
-  int detected = 0;  ///< points sought in the left image
-  int matched = 0;   ///< stereo points
-  int followed = 0;  ///< tracks continued
+  int detected = 0;        ///< points sought in the left image
+  int matched = 0;         ///< stereo points
+  int followed = 0;        ///< tracks continued
   double row_error = 0.0;  ///< mean |v_left - v_right| of the stereo points [px]
 };
 
@@ -25,8 +25,8 @@ class PointTracker {
   virtual PairFigures track(const RectifiedPair& pair, PointTracks& tracks) = 0;
 };
 
-/// Points are found again by their descriptors, near where the motion before lets expect them; their
-/// places are then refined against the image before.
+/// Points are found again by their descriptors, near where the motion before lets expect them;
+/// their places are then refined against the image before.
 std::unique_ptr<PointTracker> make_descriptor_tracker(const StereoFrontendParameters& parameters);
 
 /// Corners (Shi & Tomasi 1994) are followed by their surroundings from pair to pair; new ones begin

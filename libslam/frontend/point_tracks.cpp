@@ -26,8 +26,7 @@ std::vector<bool> PointTracks::confirm(const StereoCamera& camera,
     const PointTrack& track = tracks_[sighting.track];
     pairs.push_back({track.p, track.cov, sighting.point.z, covariance_of(sighting.point)});
   }
-  const Eigen::Isometry3d guess =
-      motion_ ? motion_->T_after_before : Eigen::Isometry3d::Identity();
+  const Eigen::Isometry3d guess = motion_ ? motion_->T_after_before : Eigen::Isometry3d::Identity();
   const bool first = tracks_.empty();
   motion_ = estimate_stereo_motion(camera, pairs, guess, kGate);
   founding_ = !motion_.has_value();

@@ -8,20 +8,20 @@
 
 #include <Eigen/Geometry>
 
-#include <libslam/frontend/stereo_motion.hpp>
 #include <libslam/frontend/stereo_match.hpp>
+#include <libslam/frontend/stereo_motion.hpp>
 
 namespace libslam {
 
 struct PointTrack {
   std::int64_t id = 0;
-  int sightings = 1;      ///< in accordance with the motion of the camera
-  int unseen = 0;         ///< pairs since the last sighting
-  bool founding = false;  ///< began where there was no motion to check it by
-  bool delivered = false;  ///< the filter has it
-  StereoMatch last;       ///< as it was sighted last
-  Eigen::Vector3d p = Eigen::Vector3d::Zero();      ///< in the present camera frame [m]
-  Eigen::Matrix3d cov = Eigen::Matrix3d::Zero();    ///< of `p`
+  int sightings = 1;                            ///< in accordance with the motion of the camera
+  int unseen = 0;                               ///< pairs since the last sighting
+  bool founding = false;                        ///< began where there was no motion to check it by
+  bool delivered = false;                       ///< the filter has it
+  StereoMatch last;                             ///< as it was sighted last
+  Eigen::Vector3d p = Eigen::Vector3d::Zero();  ///< in the present camera frame [m]
+  Eigen::Matrix3d cov = Eigen::Matrix3d::Zero();  ///< of `p`
 };
 
 /// A sighting that some matcher believes to be one of a track.

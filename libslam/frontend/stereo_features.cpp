@@ -144,8 +144,8 @@ void StereoFeatures::extract(const mrpt::obs::CSensoryFrame& frame,
     if (observation == nullptr) continue;
     if (!sensor_label_.empty() && observation->sensorLabel != sensor_label_) continue;
     try {
-      FeatureBatch batch = camera_of(observation->sensorLabel).extract(*observation,
-                                                                       with_identities_);
+      FeatureBatch batch =
+          camera_of(observation->sensorLabel).extract(*observation, with_identities_);
       if (!batch.empty()) batches.push_back(std::move(batch));
     } catch (const UnusableImages& defect) {
       ++unusable_;
@@ -161,8 +161,10 @@ std::vector<std::string> StereoFeatures::warnings() const {
   for (const auto& camera : cameras_) {
     if (camera->figures.mean_row_error <= kSuspiciousRowError) continue;
     char text[128];
-    std::snprintf(text, sizeof text, "rows of matched points differ by %.2f px: is the calibration "
-                  "that of these images?", camera->figures.mean_row_error);
+    std::snprintf(text, sizeof text,
+                  "rows of matched points differ by %.2f px: is the calibration "
+                  "that of these images?",
+                  camera->figures.mean_row_error);
     all.push_back("stereo camera '" + camera->label + "': " + text);
   }
   return all;

@@ -18,9 +18,9 @@ namespace libslam {
 /// since d = u - u_right shares u.
 struct StereoMatch {
   Eigen::Vector3d z = Eigen::Vector3d::Zero();
-  double sigma = 1.0;      ///< [px]
-  double place = 0.0;      ///< [px]
-  double row_error = 0.0;  ///< v_left - v_right [px]: shows a bad calibration
+  double sigma = 1.0;                            ///< [px]
+  double place = 0.0;                            ///< [px]
+  double row_error = 0.0;                        ///< v_left - v_right [px]: shows a bad calibration
   std::shared_ptr<const Descriptor> appearance;  ///< may be null
 };
 

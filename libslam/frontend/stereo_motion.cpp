@@ -40,7 +40,7 @@ Eigen::Matrix3d skew(const Eigen::Vector3d& v) {
 /// What a pair says about the motion at some estimate.
 struct Residual {
   Eigen::Vector3d e;
-  Eigen::Matrix3d J;         ///< d h / d (T p)
+  Eigen::Matrix3d J;  ///< d h / d (T p)
   Eigen::Vector3d p_after;
   Eigen::Matrix3d information;
 };
@@ -86,8 +86,8 @@ Matrix6 minimize(const StereoCamera& camera, std::span<const PointPair> pairs,
     if (!step.allFinite()) break;
     const Eigen::Vector3d w = step.tail<3>();
     const double angle = w.norm();
-    const Eigen::AngleAxisd turn(angle, angle > 0.0 ? Eigen::Vector3d(w / angle)
-                                                    : Eigen::Vector3d::UnitX());
+    const Eigen::AngleAxisd turn(
+        angle, angle > 0.0 ? Eigen::Vector3d(w / angle) : Eigen::Vector3d::UnitX());
     T = Eigen::Translation3d(step.head<3>()) * turn * T;
     if (step.norm() < kConverged) break;
   }

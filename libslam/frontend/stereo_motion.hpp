@@ -13,9 +13,9 @@ namespace libslam {
 
 /// One point before and after the motion.
 struct PointPair {
-  Eigen::Vector3d p_before = Eigen::Vector3d::Zero();      ///< camera frame before [m]
-  Eigen::Matrix3d cov_before = Eigen::Matrix3d::Zero();    ///< of `p_before`
-  Eigen::Vector3d z_after = Eigen::Vector3d::Zero();       ///< (u, v, d) [px]
+  Eigen::Vector3d p_before = Eigen::Vector3d::Zero();       ///< camera frame before [m]
+  Eigen::Matrix3d cov_before = Eigen::Matrix3d::Zero();     ///< of `p_before`
+  Eigen::Vector3d z_after = Eigen::Vector3d::Zero();        ///< (u, v, d) [px]
   Eigen::Matrix3d cov_after = Eigen::Matrix3d::Identity();  ///< of `z_after`
 };
 

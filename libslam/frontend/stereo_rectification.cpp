@@ -38,8 +38,7 @@ cv::Mat gray_of(const mrpt::img::CImage& image, const char* side) {
     throw UnusableImages(name_of(image, side) + ": is no 8-bit image of at most 16384 x 16384");
   if (pixels.channels() == 1) return pixels;
   cv::Mat gray;
-  cv::cvtColor(pixels, gray,
-               pixels.channels() == 3 ? cv::COLOR_BGR2GRAY : cv::COLOR_BGRA2GRAY);
+  cv::cvtColor(pixels, gray, pixels.channels() == 3 ? cv::COLOR_BGR2GRAY : cv::COLOR_BGRA2GRAY);
   return gray;
 }
 
@@ -163,10 +162,14 @@ void StereoRectifier::compute_tables(const Observation& o, cv::Size size) {
                               left_map_[1]);
   cv::initUndistortRectifyMap(K_right, D_right, R_right, P_right, size, CV_16SC2, right_map_[0],
                               right_map_[1]);
-  StereoCamera camera{P_left.at<double>(0, 0), P_left.at<double>(1, 1), P_left.at<double>(0, 2),
+  StereoCamera camera{P_left.at<double>(0, 0),
+                      P_left.at<double>(1, 1),
+                      P_left.at<double>(0, 2),
                       P_left.at<double>(1, 2),
-                      -P_right.at<double>(0, 3) / P_right.at<double>(0, 0), size.width,
-                      size.height, isometry_of(o.cameraPose)};
+                      -P_right.at<double>(0, 3) / P_right.at<double>(0, 0),
+                      size.width,
+                      size.height,
+                      isometry_of(o.cameraPose)};
   if (!(camera.baseline > 0.0))
     throw UnusableImages("the images cannot be rectified: no horizontal baseline");
   camera.T_robot_camera.rotate(matrix_of(R_left).transpose());  // X_rectified = R_left X_left

@@ -3,10 +3,13 @@
 
 #include <Eigen/Geometry>
 
+#include <libslam/association/appearance.hpp>
 #include <libslam/association/known.hpp>
 #include <libslam/association/nearest_neighbour.hpp>
+#include <libslam/frontend/fiducials.hpp>
 #include <libslam/frontend/range_bearing_observation.hpp>
 #include <libslam/frontend/sensor_path_observation.hpp>
+#include <libslam/frontend/stereo_features.hpp>
 #include <libslam/frontend/stereo_observation.hpp>
 #include <libslam/io/map_file.hpp>
 #include <libslam/measurement/range_bearing.hpp>
@@ -49,6 +52,9 @@ std::unique_ptr<Associator> make_associator(const Parameters& p, const Measureme
   if (p.association.method == "nearest_neighbour") return nearest();
   if (p.association.method == "known_or_nearest")
     return std::make_unique<KnownAssociation>(chi_square_quantile(1.0, dof), nearest());
+  if (p.association.method == "appearance")
+    return std::make_unique<AppearanceAssociation>(gate, p.association.appearance_distance,
+                                                   p.association.appearance_ratio);
   throw_unknown("association method", p.association.method);
 }
 
@@ -138,15 +144,18 @@ EkfSlamParts make_filter_parts(const Parameters& p, const TrueState* truth) {
 
 std::unique_ptr<Frontend> make_frontend(const Parameters& p) {
   if (p.frontend.source == "range_bearing")
-    return std::make_unique<RangeBearingObservation>(p.frontend, p.measurement,
-                                                     p.input.sensor_label,
-                                                     p.association.method != "nearest_neighbour");
+    return std::make_unique<RangeBearingObservation>(
+        p.frontend, p.measurement, p.input.sensor_label, p.association.uses_identities());
   if (p.frontend.source == "sensor_path")
     return std::make_unique<SensorPathObservation>(p.measurement, p.input.sensor_label);
   if (p.frontend.source == "stereo_points")
-    return std::make_unique<StereoObservation>(p.frontend, p.measurement.stereo,
-                                               p.input.sensor_label,
-                                               p.association.method != "nearest_neighbour");
+    return std::make_unique<StereoObservation>(
+        p.frontend, p.measurement.stereo, p.input.sensor_label, p.association.uses_identities());
+  if (p.frontend.source == "stereo_images")
+    return std::make_unique<StereoFeatures>(p.frontend, p.input.sensor_label,
+                                            p.association.uses_identities());
+  if (p.frontend.source == "fiducials")
+    return std::make_unique<Fiducials>(p.frontend, p.input.sensor_label);
   throw_unknown("front-end", p.frontend.source);
 }
 

@@ -14,16 +14,22 @@ struct AssociationParameters {
   double new_landmark_probability = 0.999;
   int confirm_after = 1;
   int prune_after = 0;
+  double appearance_distance = 0.3;
+  double appearance_ratio = 0.8;
+
+  /// Landmarks keep the identities that features have.
+  bool uses_identities() const { return method != "nearest_neighbour" && method != "appearance"; }
 
   void describe(auto& v) {
     v.value("method", method,
             {"",
              "known: identities of the log; nearest_neighbour: identities are ignored; "
              "known_or_nearest: identities of the log without a gate, nearest neighbour for "
-             "observations that have none.",
+             "observations that have none; appearance: image features by their descriptors, then "
+             "by the gate.",
              0,
              0,
-             {"known", "nearest_neighbour", "known_or_nearest"}});
+             {"known", "nearest_neighbour", "known_or_nearest", "appearance"}});
     v.value("gate_probability", gate_probability,
             {"1",
              "An observation is accepted as a sighting of a landmark if its squared Mahalanobis "
@@ -40,6 +46,13 @@ struct AssociationParameters {
     v.value("prune_after", prune_after,
             {"1", "A landmark that is not confirmed within this many updates is removed; 0: never.",
              0});
+    v.value("appearance_distance", appearance_distance,
+            {"1",
+             "Largest distance of two descriptors of one landmark: share of the bits, or of the "
+             "length of a SIFT descriptor (appearance).",
+             1e-6, 1});
+    v.value("appearance_ratio", appearance_ratio,
+            {"1", "Best descriptor distance over second best, at most (appearance).", 1e-6, 1});
   }
 };
 

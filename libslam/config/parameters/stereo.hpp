@@ -38,9 +38,9 @@ struct StereoFrontendParameters {
              {"descriptors", "klt"}});
     v.value("detected", detected,
             {"1", "Points sought in the left image, spread over it.", 8, 100000});
-    v.value("delivered", delivered,
-            {"1", "Most features that one pair gives to the filter, oldest tracks first.", 1,
-             100000});
+    v.value(
+        "delivered", delivered,
+        {"1", "Most features that one pair gives to the filter, oldest tracks first.", 1, 100000});
     v.value("sigma_pixel", sigma_pixel,
             {"px", "Standard deviation of each coordinate of a point in each image.", 1e-3, 100});
     v.value("row_tolerance", row_tolerance,

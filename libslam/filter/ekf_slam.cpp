@@ -223,8 +223,9 @@ void EkfSlam::correct(std::span<const Feature> features, UpdateOutcome& outcome)
 
 void EkfSlam::add_landmarks(std::span<const Feature> features, UpdateOutcome& outcome) {
   const PhaseTimer timer(times_, Phase::kAugment);
-  for (const Verdict& verdict : verdicts_)
-    if (verdict.outcome == Outcome::kPaired) parts_.registry.record_sighting(verdict.landmark);
+  for (std::size_t i = 0; i < features.size(); ++i)
+    if (verdicts_[i].outcome == Outcome::kPaired)
+      parts_.registry.record_sighting(verdicts_[i].landmark, features[i].appearance);
   for (std::size_t i = 0; i < features.size(); ++i) {
     if (verdicts_[i].outcome != Outcome::kNew) continue;
     if (!parts_.measurement->initializable(features[i])) {
@@ -236,7 +237,7 @@ void EkfSlam::add_landmarks(std::span<const Feature> features, UpdateOutcome& ou
     const BlockId block = state_.augment(parts_.measurement->landmark_spec(), initialization_);
     linearizer_.added(state_, pose_, block, features[i].id);
     verdicts_[i].landmark = parts_.registry.size();
-    parts_.registry.add(block, features[i].id);
+    parts_.registry.add(block, features[i].id, features[i].appearance);
     ++outcome.new_landmarks;
   }
   outcome.verdicts = verdicts_;

@@ -4,11 +4,14 @@
 
 #include <Eigen/Geometry>
 
+#include <libslam/association/appearance.hpp>
 #include <libslam/association/joint_compatibility.hpp>
 #include <libslam/association/known.hpp>
 #include <libslam/association/nearest_neighbour.hpp>
+#include <libslam/frontend/fiducials.hpp>
 #include <libslam/frontend/range_bearing_observation.hpp>
 #include <libslam/frontend/sensor_path_observation.hpp>
+#include <libslam/frontend/stereo_features.hpp>
 #include <libslam/frontend/stereo_observation.hpp>
 #include <libslam/io/map_file.hpp>
 #include <libslam/measurement/range_bearing.hpp>
@@ -63,6 +66,9 @@ std::unique_ptr<Associator> make_associator(const Parameters& p, const Measureme
     return std::make_unique<KnownAssociation>(all, nearest());
   if (p.association.method == "known_or_joint")
     return std::make_unique<KnownAssociation>(all, joint());
+  if (p.association.method == "appearance")
+    return std::make_unique<AppearanceAssociation>(gate, p.association.appearance_distance,
+                                                   p.association.appearance_ratio);
   throw_unknown("association method", p.association.method);
 }
 
@@ -212,9 +218,13 @@ std::unique_ptr<Frontend> make_frontend(const Parameters& p) {
   if (p.frontend.source == "sensor_path")
     return std::make_unique<SensorPathObservation>(p.measurement, p.input.sensor_label);
   if (p.frontend.source == "stereo_points")
-    return std::make_unique<StereoObservation>(p.frontend, p.measurement.stereo,
-                                               p.input.sensor_label,
-                                               p.association.method != "nearest_neighbour");
+    return std::make_unique<StereoObservation>(
+        p.frontend, p.measurement.stereo, p.input.sensor_label, p.association.uses_identities());
+  if (p.frontend.source == "stereo_images")
+    return std::make_unique<StereoFeatures>(p.frontend, p.input.sensor_label,
+                                            p.association.uses_identities());
+  if (p.frontend.source == "fiducials")
+    return std::make_unique<Fiducials>(p.frontend, p.input.sensor_label);
   throw_unknown("front-end", p.frontend.source);
 }
 

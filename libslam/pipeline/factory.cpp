@@ -23,6 +23,7 @@
 #include <libslam/motion/differential.hpp>
 #include <libslam/motion/odometry_increment.hpp>
 #include <libslam/pipeline/factory.hpp>
+#include <libslam/pipeline/policy_factory.hpp>
 #include <libslam/policy/sage_husa.hpp>
 #include <libslam/state/chi_square.hpp>
 
@@ -82,37 +83,6 @@ std::unique_ptr<LinearizationPoint> make_linearization_point(const Parameters& p
   return std::make_unique<TruthPoint>(*truth);
 }
 
-/// The rows of the measurements of a model.
-std::vector<NoiseComponent> noise_components(const Parameters& p) {
-  const NoiseAdaptationParameters& n = p.policies.noise_adaptation;
-  constexpr double kDegree = kPi / 180.0;
-  if (p.measurement.model == "range_bearing")
-    return {
-        {"range", p.measurement.sigma_range, n.min_sigma_range, n.max_sigma_range,
-         n.range_growth_per_m},
-        {"bearing", p.measurement.sigma_bearing_deg * kDegree, n.min_sigma_bearing_deg * kDegree,
-         n.max_sigma_bearing_deg * kDegree, n.bearing_growth_per_m}};
-  throw_unknown("measurement model of a noise adaptation", p.measurement.model);
-}
-
-std::unique_ptr<NoisePolicy> make_noise_policy(const Parameters& p) {
-  if (p.policies.noise_adaptation.method == "off") return nullptr;
-  const double gate = p.association.gate_probability;
-  const bool trusts_identities = p.association.method == "known_or_nearest";
-  return std::make_unique<SageHusa>(p.policies.noise_adaptation, noise_components(p),
-                                    GateProbabilities{trusts_identities ? 1.0 : gate, gate});
-}
-
-std::unique_ptr<ProcessScale> make_process_policy(const Parameters& p,
-                                                  const MeasurementModel& model) {
-  if (p.policies.process_adaptation.method == "off") return nullptr;
-  const double gate =
-      p.association.method == "known_or_nearest" ? 1.0 : p.association.gate_probability;
-  return std::make_unique<ProcessScale>(
-      p.policies.process_adaptation,
-      gated_covariance(gate, tangent_dimension(model.landmark_spec())));
-}
-
 /// Of a pose error in the plane, or in space with the same sigmas for every axis.
 BlockMatrix pose_covariance(const BlockSpec& pose, double sigma_xy, double sigma_heading_deg) {
   TangentVector sigma(tangent_dimension(pose));
@@ -142,27 +112,6 @@ std::optional<MapStart> make_map_start(const MapParameters& map) {
   start.at_saved_pose = map.start == "saved_pose";
   start.saved_calibration = map.calibration == "saved";
   return start;
-}
-
-std::optional<DisturbanceResponse> make_disturbance_response(const DisturbanceParameters& p,
-                                                             const BlockSpec& pose) {
-  if (p.response == "none") return std::nullopt;
-  DisturbanceOptions options;
-  if (p.response == "additive")
-    options.inflation = Inflation::kAdditive;
-  else if (p.response == "whole_state")
-    options.inflation = Inflation::kWholeState;
-  else if (p.response != "maximum_likelihood")
-    throw_unknown("response to a disturbance", p.response);
-  options.window = p.window;
-  options.trigger_probability = p.trigger_probability;
-  options.release_probability = p.release_probability;
-  options.hold = p.hold_updates;
-  const int positions = pose.chart == Chart::kSE3 ? 3 : 2;
-  options.sigma = BlockVector::Constant(tangent_dimension(pose), p.sigma_heading_deg * kPi / 180.0);
-  options.sigma.head(positions).setConstant(p.sigma_xy);
-  options.max_factor = p.max_factor;
-  return DisturbanceResponse(Disturbance(options), p.near_landmark, p.lost_after);
 }
 
 }  // namespace

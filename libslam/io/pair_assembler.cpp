@@ -133,7 +133,8 @@ void PairAssembler::emit(const mrpt::obs::CSensoryFrame::Ptr& frame, std::int64_
   if (frame) stamp = first_stamp(*frame);
   if (!stamp && waiting_) stamp = first_stamp(*waiting_);
   step.time = place(stamp, entry);
-  if (stamp && clock_.motion_time && waiting_) step.dt = std::max(0.0, step.time - *clock_.motion_time);
+  if (stamp && clock_.motion_time && waiting_)
+    step.dt = std::max(0.0, step.time - *clock_.motion_time);
   if (stamp) clock_.motion_time = step.time;
   step.action = std::exchange(waiting_, nullptr);
   step.has_motion_covariance = step.action && has_covariance(*step.action);

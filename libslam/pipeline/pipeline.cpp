@@ -99,6 +99,7 @@ StepRecord Pipeline::update(const LogStep& step) {
   record.gated = last_update_.gated;
   record.ambiguous = last_update_.ambiguous;
   record.new_landmarks = last_update_.new_landmarks;
+  record.event = last_update_.event;
   return record;
 }
 
@@ -106,6 +107,7 @@ StepRecord Pipeline::estimate() const {
   StepRecord record;
   fill_pose(filter_.state(), filter_.pose(), record);
   record.calibration = filter_.calibration();
+  record.noise = filter_.noise();
   return record;
 }
 

@@ -72,13 +72,12 @@ TEST_F(BuiltMap, GoesThroughAFileWithNothingLost) {
 // In a map that it has made the robot knows where it is from the first sighting on, and the map
 // stays what it is.
 TEST_F(BuiltMap, IsWhatTheNextDriveLocalizesIn) {
-  const CPosePDFGaussian start(mrpt::poses::CPose2D(0.3, -0.2, 0.05),
-                               [] {
-                                 mrpt::math::CMatrixDouble33 cov;
-                                 cov(0, 0) = cov(1, 1) = 0.25;
-                                 cov(2, 2) = 0.01;
-                                 return cov;
-                               }());
+  const CPosePDFGaussian start(mrpt::poses::CPose2D(0.3, -0.2, 0.05), [] {
+    mrpt::math::CMatrixDouble33 cov;
+    cov(0, 0) = cov(1, 1) = 0.25;
+    cov(2, 2) = 0.01;
+    return cov;
+  }());
   second_.enableMapUpdating(false);
   second_.initialize(map_, &start);
   EXPECT_NEAR(pose_of(second_).mean.x(), 0.3, 1e-12);

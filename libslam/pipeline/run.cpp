@@ -99,7 +99,9 @@ class Run {
   RunSummary finish() {
     save_map();
     const LandmarkMap map = finite_landmarks();
-    const bool known = request_.parameters.association.method != "nearest_neighbour";
+    // Points of images are numbered as they come.
+    const bool known = request_.parameters.association.uses_identities() &&
+                       request_.parameters.frontend.source != "stereo_images";
     RunSummary summary =
         recorder_.finish(summarize(), map, request_.truth,
                          known ? LandmarkIdentity::known : LandmarkIdentity::unknown);
@@ -129,10 +131,8 @@ class Run {
   }
 
   void write_mrpt_files(const LandmarkMap& map) const {
-    std::vector<Eigen::Vector3d> path;
-    for (const auto& step : read_estimated_path(request_.directory / "trajectory.csv"))
-      path.push_back(step.pose);
-    write_scene_3d(request_.directory / "scene.3Dscene", path, map);
+    write_scene_3d(request_.directory / "scene.3Dscene",
+                   trajectory_of(read_path(request_.directory / "trajectory.csv")), map);
     simple_map_.write(request_.directory / "map.simplemap");
   }
 
@@ -168,8 +168,15 @@ class Run {
     any_used_ = any_used_ || record.accepted > 0 || record.new_landmarks > 0;
     unused_sightings_ += record.ambiguous + record.gated;
     recorder_.record(record);
-    if (request_.parameters.output.mrpt_files) simple_map_.add(record.pose, record.cov, step.frame);
+    if (request_.parameters.output.mrpt_files) keep_frame(record, step.frame);
     if (request_.on_step) request_.on_step(player_.progress(), record);
+  }
+
+  void keep_frame(const StepRecord& record, const mrpt::obs::CSensoryFrame::Ptr& frame) {
+    if (record.spatial)
+      simple_map_.add(*record.spatial, frame);
+    else
+      simple_map_.add(record.pose, record.cov, frame);
   }
 
   RunSummary summarize() {
@@ -205,9 +212,11 @@ class Run {
     warnings.insert(warnings.end(), warnings_.begin(), warnings_.end());
     const auto about_odometry = pipeline_.odometry().warnings();
     warnings.insert(warnings.end(), about_odometry.begin(), about_odometry.end());
+    const auto about_features = pipeline_.frontend().warnings();
+    warnings.insert(warnings.end(), about_features.begin(), about_features.end());
     if (pipeline_.frontend().unusable() > 0)
       warnings.push_back(std::to_string(pipeline_.frontend().unusable()) +
-                         " measurements left out: not finite or range not positive");
+                         " measurements left out as unusable");
     warn_of_idle_schedule(warnings);
     warn_of_unused_sightings(warnings);
     fill_timing(summary);

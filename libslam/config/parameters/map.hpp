@@ -15,6 +15,9 @@ struct MapParameters {
   double initial_x = 0.0;
   double initial_y = 0.0;
   double initial_heading_deg = 0.0;
+  double initial_z = 0.0;
+  double initial_pitch_deg = 0.0;
+  double initial_roll_deg = 0.0;
   double sigma = 0.0;
   std::string calibration = "saved";
 
@@ -42,6 +45,11 @@ struct MapParameters {
     v.value("initial_y", initial_y, {"m", "Start position in the frame of the map (given_pose)."});
     v.value("initial_heading_deg", initial_heading_deg,
             {"deg", "Start heading in the frame of the map (given_pose)."});
+    v.value("initial_z", initial_z, {"m", "Start height of a robot in space (given_pose)."});
+    v.value("initial_pitch_deg", initial_pitch_deg,
+            {"deg", "Start pitch of a robot in space, nose down positive (given_pose)."});
+    v.value("initial_roll_deg", initial_roll_deg,
+            {"deg", "Start roll of a robot in space, right side down positive (given_pose)."});
     v.value("sigma", sigma,
             {"m",
              "Standard deviation of each coordinate of a surveyed landmark; 0: known exactly, "

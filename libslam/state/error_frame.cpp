@@ -89,8 +89,8 @@ ChartChange RightInvariantFrame::retract_planar(GaussianState& state, BlockId po
       continue;
     }
     auto& x = block.estimate;
-    // xi = -J x turn is the turn about the origin taken back: what has no correction stays,
-    // exactly.
+    // xi = -J x turn is the turn about the origin taken back: what has no correction stays, exactly
+    // here and to rounding in the exponential. Given landmarks must not creep.
     if (role == WorldRole::kPoint && delta.segment<2>(block.offset).isZero(0.0)) continue;
     const Eigen::Vector2d before = x.head<2>();
     const Eigen::Vector2d xi = delta.segment<2>(block.offset) - rotated_90(before) * turn;
@@ -119,6 +119,7 @@ ChartChange RightInvariantFrame::retract_spatial(GaussianState& state, BlockId p
     if (block.spec.chart == Chart::kSE2 || block.size < 3)
       throw std::invalid_argument("block '" + block.spec.name +
                                   "' is planar, the robot moves in space");
+    if (role == WorldRole::kPoint && delta.segment<3>(block.offset).isZero(0.0)) continue;
     auto& x = block.estimate;
     const Eigen::Vector3d before = x.head<3>();
     const Eigen::Vector3d xi = delta.segment<3>(block.offset) + before.cross(theta);

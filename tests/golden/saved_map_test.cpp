@@ -53,7 +53,7 @@ TEST(SavedMapInTheWoods, LocalizationInTheTrueLandmarks) {
                                scratch.path() / "run", settings);
     EXPECT_LE(run.summary.truth->path->raw->rmse_m, 0.055) << method;  // measured .0521
     EXPECT_EQ(run.map.size(), 17u);
-    EXPECT_EQ(*run.summary.truth->map->rmse_m, 0.0);
+    EXPECT_LE(*run.summary.truth->map->rmse_m, 1e-6);  // six decimals of the start heading
   }
 }
 
@@ -74,12 +74,19 @@ TEST(SavedMapInTheWoods, TheSecondHalfLivesOnTheMapOfTheFirst) {
   const LogRun continued =
       run_imported(kConfig, second, scratch.path() / "continued", {load, "map.mode=continue"});
   const LogRun alone = run_imported(kConfig, second, scratch.path() / "alone");
-  std::cout << "second half, path aligned [m]: localized "
-            << given.summary.truth->path->aligned->rmse_m << ", continued "
-            << continued.summary.truth->path->aligned->rmse_m << ", without the map "
-            << alone.summary.truth->path->aligned->rmse_m << "; map aligned [m]: half "
-            << *half.summary.truth->map->rmse_aligned_m << ", continued "
-            << *continued.summary.truth->map->rmse_aligned_m << ", whole "
-            << *whole.summary.truth->map->rmse_aligned_m << "; continued - whole "
+  const auto path_error = [](const LogRun& run) {
+    return run.summary.truth->path->aligned->rmse_m;
+  };
+  const auto map_error = [](const LogRun& run) { return *run.summary.truth->map->rmse_aligned_m; };
+  EXPECT_LE(path_error(given), path_error(alone));
+  EXPECT_LE(path_error(continued), path_error(alone));
+  EXPECT_LE(map_error(continued), map_error(half));
+  EXPECT_LE(map_error(continued), 0.025);  // measured .0207, the whole log in one run .0217
+  // Updates once a second start anew with the second half, at other frames than in one run.
+  EXPECT_LE(largest_difference(continued.map, whole.map), 0.01);
+  std::cout << "second half, path aligned [m]: localized " << path_error(given) << ", continued "
+            << path_error(continued) << ", without the map " << path_error(alone)
+            << "; map aligned [m]: half " << map_error(half) << ", continued "
+            << map_error(continued) << ", whole " << map_error(whole) << "; continued - whole "
             << largest_difference(continued.map, whole.map) << "\n";
 }

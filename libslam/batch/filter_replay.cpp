@@ -13,6 +13,9 @@ FilterReplay replay_filter(const std::string& rawlog, const Parameters& paramete
   PlayerOptions options;
   options.input = parameters.input;
   RawlogPlayer player(rawlog, options);
+  if (!parameters.map.file.empty())
+    throw std::invalid_argument("a batch starts without a map, the run started in " +
+                                parameters.map.file);
   if (!make_filter_parts(parameters).measurement)
     throw std::invalid_argument("a batch needs landmarks; measurement.model " +
                                 parameters.measurement.model + " has none");

@@ -78,7 +78,7 @@ TEST(PoseFit, ItsCovarianceIsTheSpreadOfTheErrors) {
 }
 
 TEST(ConstellationIndex, FindsByDistanceAndByPlace) {
-  const auto world = testing::scattered(60, 50.0, 8);
+  const auto world = libslam::testing::scattered(60, 50.0, 8);
   const ConstellationIndex index(points(world, 0.1), 25.0, 10.0);
   std::size_t expected = 0;
   for (std::size_t i = 0; i < world.size(); ++i)
@@ -102,7 +102,7 @@ TEST(ConstellationIndex, FindsByDistanceAndByPlace) {
 }
 
 TEST(Constellation, FindsTheRobotWithoutNoiseAmongObjectsThatAreNotMapped) {
-  const auto world = testing::scattered(80, 100.0, 21);
+  const auto world = libslam::testing::scattered(80, 100.0, 21);
   const ConstellationIndex index(points(world, 0.05), 50.0, 20.0);
   const Eigen::Vector3d pose(45.0, 55.0, -2.5);
   std::vector<Eigen::Vector2d> visible;
@@ -124,7 +124,7 @@ TEST(Constellation, FindsTheRobotWithoutNoiseAmongObjectsThatAreNotMapped) {
 }
 
 TEST(Constellation, TwoPlacesThatLookAlikeAreAmbiguous) {
-  std::vector<Eigen::Vector2d> world = testing::scattered(8, 15.0, 3);
+  std::vector<Eigen::Vector2d> world = libslam::testing::scattered(8, 15.0, 3);
   const std::size_t place = world.size();
   for (std::size_t i = 0; i < place; ++i) world.emplace_back(world[i] + Eigen::Vector2d(60.0, 0.0));
   const Eigen::Vector3d pose(7.0, 7.0, 0.4);
@@ -147,13 +147,14 @@ TEST(Constellation, TwoPlacesThatLookAlikeAreAmbiguous) {
 }
 
 TEST(Constellation, ThreePointsAreNeverEnoughAndForeignOnesAreNotFound) {
-  const auto world = testing::scattered(100, 100.0, 5);
+  const auto world = libslam::testing::scattered(100, 100.0, 5);
   const ConstellationIndex index(points(world, 0.05), 60.0, 30.0);
   const SensorView view = all_round(30.0);
-  const auto three = points(seen_from({50, 50, 1}, {world[0], world[1], world[2]}), 0.1);
+  const std::vector<Eigen::Vector2d> first_three(world.begin(), world.begin() + 3);
+  const auto three = points(seen_from({50, 50, 1}, first_three), 0.1);
   EXPECT_EQ(match_constellation(index, three, {&view, 1}).verdict, ConstellationVerdict::kTooFew);
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
-    const auto foreign = points(testing::scattered(6, 40.0, 1000 + seed), 0.2);
+    const auto foreign = points(libslam::testing::scattered(6, 40.0, 1000 + seed), 0.2);
     EXPECT_NE(match_constellation(index, foreign, {&view, 1}).verdict, ConstellationVerdict::kFound)
         << seed;
   }

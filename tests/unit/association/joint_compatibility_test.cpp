@@ -259,12 +259,12 @@ TEST(JointCompatibility, APointIsNewIfItIsFarFromAllLandmarksGivenTheOthers) {
 }
 
 TEST(JointCompatibility, TheBudgetBoundsTheSearchAndTheResultIsStillCompatible) {
-  testing::AssociationSceneOptions dense;
+  libslam::testing::AssociationSceneOptions dense;
   dense.landmarks = 200;
   dense.area_per_landmark = 2.0;
   dense.observations = 25;
   dense.unmapped = 5;
-  testing::AssociationScene scene(dense, 5);
+  libslam::testing::AssociationScene scene(dense, 5);
   JointCompatibilityOptions options{kGate, kNewGate};
   options.budget = 2000;
   JointCompatibility association(options);
@@ -289,7 +289,7 @@ TEST(JointCompatibility, RefusesGatesInTheWrongOrder) {
 
 // The filter's answers are those of its covariance.
 TEST(PairTest, JointCovarianceIsHPHt) {
-  testing::AssociationScene scene({}, 2);
+  libslam::testing::AssociationScene scene({}, 2);
   PairTest test = scene.test();
   const std::vector<Pairing> pairs{{0, 3}, {1, 4}, {2, 3}};
   test.select(pairs);

@@ -30,7 +30,8 @@ struct Pairing {
 class Compatibility {
  public:
   virtual ~Compatibility() = default;
-  /// Nothing if the pair is certainly farther apart than `limit` (squared Mahalanobis distance).
+  /// Nothing if the pair is certainly farther apart than `limit` (squared Mahalanobis distance), or
+  /// impossible: the sensor could not see the landmark.
   virtual std::optional<Match> test(std::size_t feature, std::size_t landmark, double limit) = 0;
 
   // Several pairs together. Their innovations nu_i, each with its own noise R_i, are one Gaussian

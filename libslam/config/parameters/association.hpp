@@ -14,10 +14,13 @@ struct AssociationParameters {
   double new_landmark_probability = 0.999;
   int confirm_after = 1;
   int prune_after = 0;
+  double appearance_distance = 0.3;
+  double appearance_ratio = 0.8;
 
   /// False: the identities of the log are not even looked at.
   bool uses_identities() const {
-    return method != "nearest_neighbour" && method != "joint_compatibility";
+    return method != "nearest_neighbour" && method != "joint_compatibility" &&
+           method != "appearance";
   }
 
   void describe(auto& v) {
@@ -27,11 +30,12 @@ struct AssociationParameters {
              "joint_compatibility: likewise, and the observations of a frame are paired together "
              "(JCBB), which holds with a pose that is off by more than landmarks are apart; "
              "known_or_nearest, known_or_joint: identities of the log without a gate, one of the "
-             "two for observations that have none.",
+             "two for observations that have none; appearance: image features by their "
+             "descriptors, then by the gate.",
              0,
              0,
              {"known", "nearest_neighbour", "joint_compatibility", "known_or_nearest",
-              "known_or_joint"}});
+              "known_or_joint", "appearance"}});
     v.value("gate_probability", gate_probability,
             {"1",
              "An observation is accepted as a sighting of a landmark if its squared Mahalanobis "
@@ -48,6 +52,13 @@ struct AssociationParameters {
     v.value("prune_after", prune_after,
             {"1", "A landmark that is not confirmed within this many updates is removed; 0: never.",
              0});
+    v.value("appearance_distance", appearance_distance,
+            {"1",
+             "Largest distance of two descriptors of one landmark: share of the bits, or of the "
+             "length of a SIFT descriptor (appearance).",
+             1e-6, 1});
+    v.value("appearance_ratio", appearance_ratio,
+            {"1", "Best descriptor distance over second best, at most (appearance).", 1e-6, 1});
   }
 };
 

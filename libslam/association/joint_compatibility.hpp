@@ -15,7 +15,7 @@
 #include <vector>
 
 #include <libslam/association/associator.hpp>
-#include <libslam/association/joint_innovation.hpp>
+#include <libslam/association/incremental_innovation.hpp>
 
 namespace libslam {
 
@@ -97,7 +97,7 @@ class JointCompatibility final : public Associator {
   std::vector<bool> taken_;      // landmarks
   std::vector<bool> contested_;  // features
   std::vector<Option> open_;     // of all depths
-  JointInnovation joint_;
+  IncrementalInnovation joint_;
   Hypothesis current_, best_;
   std::vector<Hypothesis> rivals_;
   std::size_t spent_ = 0;

@@ -90,7 +90,7 @@ Best enumerate(ShiftedPoints& points, bool ordered) {
 
 }  // namespace
 
-TEST(JointInnovation, OnePairAtATimeIsTheWholeMatrix) {
+TEST(IncrementalInnovation, OnePairAtATimeIsTheWholeMatrix) {
   std::mt19937_64 random(3);
   for (int trial = 0; trial < 20; ++trial) {
     ShiftedPoints points = random_problem(random);
@@ -98,7 +98,7 @@ TEST(JointInnovation, OnePairAtATimeIsTheWholeMatrix) {
     for (std::size_t i = 0; i < std::min(points.features(), points.landmarks()); ++i)
       pairs.push_back({i, i});
     const Match whole = points.joint(pairs);
-    JointInnovation joint;
+    IncrementalInnovation joint;
     joint.reset(points);
     joint.extend(pairs.size() - 1);  // taken and given up: leaves no trace
     joint.push();

@@ -1,8 +1,10 @@
 // slam-evaluate: compares finished runs with ground truth.
 
-#include <cstdio>
+#include <charconv>
+#include <cstdint>
 #include <filesystem>
 #include <iostream>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,6 +12,7 @@
 
 #include <libslam/config/version.hpp>
 #include <libslam/config/yaml_loader.hpp>
+#include <libslam/io/exporters/kitti_poses.hpp>
 #include <libslam/io/truth_reader.hpp>
 #include <libslam/result/recorded_run.hpp>
 
@@ -26,7 +29,8 @@ enum ExitCode { kDone = 0, kCommandLine = 2, kInput = 4, kIncomplete = 5 };
 
 struct Arguments {
   std::vector<std::string> runs;
-  std::string truth, truth_map;
+  std::string truth, truth_map, steps, placement, export_format;
+  RunWindow window;
   bool batch = false, json = false, csv = false, quiet = false, verbose = false;
   int on_line_steps = 0;
 };
@@ -51,9 +55,26 @@ TruthFiles truth_files_for(const RunSummary& summary, const Arguments& arguments
 
 LandmarkIdentity identity_of(const fs::path& directory) {
   const fs::path config = directory / "config.yaml";
-  const bool unknown =
-      fs::exists(config) && load_yaml(config).association.method == "nearest_neighbour";
+  const bool unknown = fs::exists(config) && !load_yaml(config).association.uses_identities();
   return unknown ? LandmarkIdentity::unknown : LandmarkIdentity::known;
+}
+
+/// FIRST:LAST, either may be missing. Throws CLI::ValidationError.
+void read_step_window(const std::string& text, RunWindow& window) {
+  const std::size_t colon = text.find(':');
+  const auto number = [&](const std::string& part, std::int64_t& value) {
+    if (part.empty()) return true;
+    const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), value);
+    return error == std::errc{} && end == part.data() + part.size();
+  };
+  if (colon == std::string::npos || !number(text.substr(0, colon), window.first_step) ||
+      !number(text.substr(colon + 1), window.last_step) || window.first_step > window.last_step)
+    throw CLI::ValidationError("--steps", "expected FIRST:LAST, not '" + text + "'");
+}
+
+std::optional<Placement> placement_of(const Arguments& arguments) {
+  if (arguments.placement.empty()) return std::nullopt;
+  return arguments.placement == "none" ? Placement::none : Placement::first;
 }
 
 /// `warning` says what could not be compared.
@@ -61,15 +82,20 @@ EvaluatedRun evaluate_run(const fs::path& directory, const Arguments& arguments,
                           std::string& warning) {
   const RecordedRun recorded = read_recorded_run(directory);
   EvaluatedRun run{name_of(directory), recorded.summary};
+  if (arguments.export_format == "kitti")
+    write_kitti_poses(directory / "trajectory.kitti", trajectory_of(recorded.path));
   const GroundTruth truth = read_truth(truth_files_for(run.summary, arguments));
   if (truth.empty()) {
     warning = directory.string() + ": no ground truth beside the log; name it with --truth FILE";
     if (run.summary.truth) warning += " (figures are those of the run itself)";
     return run;
   }
-  run.summary.truth = compare_with_truth(recorded, truth, identity_of(directory));
+  run.summary.truth = compare_with_truth(recorded, truth, identity_of(directory), arguments.window,
+                                         placement_of(arguments));
   if (!truth.path.poses.empty() && !run.summary.truth->path)
-    warning = directory.string() + ": no pose of the run is near a true one in time";
+    warning = directory.string() +
+              ": no pose of the run, or of the part of it that was asked for, "
+              "is near a true one in time";
   return run;
 }
 
@@ -133,6 +159,19 @@ int main(int argc, char** argv) {
       "True path (TUM, or the text form of MRPT); default: beside the rawlog of each run");
   app.add_option("--truth-map", arguments.truth_map,
                  "True landmarks (id,x,y[,z], or the text form of MRPT)");
+  auto* steps = app.add_option("--steps", arguments.steps,
+                               "Path figures of the steps FIRST:LAST only (placed as a whole run)");
+  auto* from = app.add_option("--from", arguments.window.from_s,
+                              "Path figures from this time on [s since the first step]");
+  auto* to = app.add_option("--to", arguments.window.to_s, "Path figures up to this time [s]");
+  auto* placement =
+      app.add_option("--placement", arguments.placement,
+                     "first: raw figures place the first pose of a run on the true one; none: the "
+                     "run is in the frame of the truth. Default: what run.json says, else first")
+          ->check(CLI::IsMember({"first", "none"}));
+  app.add_option("--export", arguments.export_format,
+                 "kitti: write the path as trajectory.kitti into each run")
+      ->check(CLI::IsMember({"kitti"}));
   auto* json = app.add_flag("--json", arguments.json, "Print JSON with the keys of run.json");
   auto* csv = app.add_flag("--csv", arguments.csv, "Print CSV, one line per run")->excludes(json);
   auto* batch =
@@ -140,7 +179,11 @@ int main(int argc, char** argv) {
              "--batch", arguments.batch,
              "Solve each run again as one least-squares problem over its log, print the filter "
              "beside this optimum, and write batch.json into the run")
-          ->excludes(csv);
+          ->excludes(csv)
+          ->excludes(steps)
+          ->excludes(from)
+          ->excludes(to)
+          ->excludes(placement);
   app.add_option("--on-line", arguments.on_line_steps,
                  "With --batch: also solve the log up to each of so many steps, which is what the "
                  "path of a filter can be held against")
@@ -153,11 +196,13 @@ int main(int argc, char** argv) {
                                         std::string(git_revision()) + ")");
   app.footer(
       "Examples: slam-evaluate run1 run2 --truth robot.truth.tum\n"
+      "          slam-evaluate run1 --steps 1215:1714 --placement none\n"
       "          slam-evaluate --batch run1\n"
       "Exit codes: 0 done, 2 wrong command line, 4 no run could be read, 5 some figures are "
       "missing.");
   try {
     app.parse(argc, argv);
+    if (!arguments.steps.empty()) read_step_window(arguments.steps, arguments.window);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? kDone : kCommandLine;
   }

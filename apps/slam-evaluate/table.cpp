@@ -8,6 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <libslam/result/normalized_error.hpp>
 #include <libslam/result/truth_json.hpp>
 
 namespace libslam::evaluate {
@@ -41,6 +42,11 @@ Getter of_heading(double PathErrors::Heading::*figure) {
     return path.heading ? Value((*path.heading).*figure * kDegrees) : std::nullopt;
   });
 }
+Getter of_rotation(double RotationErrors::*figure) {
+  return of_path([=](const PathErrors& path) {
+    return path.rotation ? Value((*path.rotation).*figure * kDegrees) : std::nullopt;
+  });
+}
 Getter of_nees(std::function<Value(const NeesSummary&)> get) {
   return of_truth<NeesSummary>(&TruthComparison::nees, std::move(get));
 }
@@ -71,6 +77,9 @@ void describe_path(std::vector<Description>& list) {
   list.push_back({"ate_max_m", "  max [m]", of_position(raw, &P::max_m), true});
   list.push_back({"rmse_x_m", "  x RMSE [m]", of_position(raw, &P::rmse_x_m), true});
   list.push_back({"rmse_y_m", "  y RMSE [m]", of_position(raw, &P::rmse_y_m), true});
+  list.push_back(
+      {"rmse_z_m", "  z RMSE [m]",
+       of_path([](const PathErrors& p) { return p.raw ? p.raw->rmse_z_m : std::nullopt; }), true});
   list.push_back({"ate_rmse_aligned_m", "path RMSE aligned [m]", of_position(aligned, &P::rmse_m)});
   list.push_back({"ate_mean_aligned_m", "  mean aligned [m]", of_position(aligned, &P::mean_m)});
   list.push_back({"ate_max_aligned_m", "  max aligned [m]", of_position(aligned, &P::max_m), true});
@@ -78,6 +87,11 @@ void describe_path(std::vector<Description>& list) {
       {"rmse_heading_deg", "heading RMSE [deg]", of_heading(&PathErrors::Heading::rmse_rad)});
   list.push_back(
       {"max_heading_deg", "  max [deg]", of_heading(&PathErrors::Heading::max_rad), true});
+  list.push_back(
+      {"rmse_rotation_deg", "rotation RMSE [deg]", of_rotation(&RotationErrors::rmse_rad)});
+  list.push_back({"max_rotation_deg", "  max [deg]", of_rotation(&RotationErrors::max_rad), true});
+  list.push_back({"drift_percent", "drift at the end [%]",
+                  of_path([](const PathErrors& p) { return p.drift_percent; })});
   list.push_back(
       {"rpe_distance_m", "drift over [m]", of_relative(&RelativeErrors::distance_m), true});
   list.push_back({"rpe_trans_percent", "  drift [%]", of_relative(&RelativeErrors::trans_percent)});
@@ -87,10 +101,25 @@ void describe_path(std::vector<Description>& list) {
       {"poses", "poses matched", of_path([](const PathErrors& p) { return p.poses; }), true});
 }
 
-void describe_consistency(std::vector<Description>& list) {
-  list.push_back(
-      {"nees_mean", "NEES mean (3)", of_nees([](const NeesSummary& n) { return n.mean; })});
-  list.push_back({"nees_median", "NEES median (2.37)",
+/// Ideal value of a figure of NEES, by the degrees of freedom of the runs: "(3)", "(3 or 6)".
+std::string nees_ideal(const std::vector<EvaluatedRun>& runs, double (*ideal)(int dof)) {
+  std::set<int> dofs;
+  for (const EvaluatedRun& run : runs)
+    if (run.summary.truth && run.summary.truth->nees) dofs.insert(run.summary.truth->nees->dof);
+  std::string text;
+  for (const int dof : dofs) {
+    char value[32];
+    std::snprintf(value, sizeof value, "%.3g", ideal(dof));
+    text += (text.empty() ? "" : " or ") + std::string(value);
+  }
+  return " (" + text + ")";
+}
+
+void describe_consistency(std::vector<Description>& list, const std::vector<EvaluatedRun>& runs) {
+  const auto mean = [](int dof) { return static_cast<double>(dof); };
+  list.push_back({"nees_mean", "NEES mean" + nees_ideal(runs, mean),
+                  of_nees([](const NeesSummary& n) { return n.mean; })});
+  list.push_back({"nees_median", "NEES median" + nees_ideal(runs, median_normalized_square),
                   of_nees([](const NeesSummary& n) { return n.median; })});
   list.push_back(
       {"nees_in_95", "NEES in 95 % (.95)", of_nees([](const NeesSummary& n) { return n.in_95; })});
@@ -156,7 +185,7 @@ std::string pad(const std::string& text, std::size_t width, bool left) {
 std::vector<Figure> figures_of(const std::vector<EvaluatedRun>& runs, bool detailed) {
   std::vector<Description> list;
   describe_path(list);
-  describe_consistency(list);
+  describe_consistency(list, runs);
   describe_map(list);
   describe_calibration(list, runs);
   list.push_back({"cpu_ms_per_step", "CPU per step [ms]", cpu_ms_per_step});

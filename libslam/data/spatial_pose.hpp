@@ -29,4 +29,16 @@ inline Eigen::Vector3d shadow_of(const SpatialPose& pose) {
   return {pose.position.x(), pose.position.y(), std::atan2(forward.y(), forward.x())};
 }
 
+/// Covariance of the shadow to first order, of (x, y, yaw). Yaw means nothing where the body looks
+/// straight up or down; its row is then that of the rotation about z.
+inline Eigen::Matrix3d shadow_covariance(const SpatialEstimate& estimate) {
+  const Eigen::Vector3d forward = estimate.pose.rotation * Eigen::Vector3d::UnitX();
+  const double level = forward.head<2>().squaredNorm();
+  Eigen::Matrix<double, 3, 6> J = Eigen::Matrix<double, 3, 6>::Zero();
+  J.topLeftCorner<2, 2>().setIdentity();
+  if (level > 1e-12) J.block<1, 2>(2, 3) = -forward.z() / level * forward.head<2>().transpose();
+  J(2, 5) = 1.0;
+  return J * estimate.cov * J.transpose();
+}
+
 }  // namespace libslam

@@ -22,6 +22,13 @@ struct CalibrationValue {
   bool observable = false;  ///< the data excited it and sigma fell below half of its prior
 };
 
+/// A noise that a policy adapts while the run goes.
+struct AdaptedNoise {
+  std::string name;         ///< sensor channel and component, e.g. "range"
+  double sigma = 0.0;       ///< adapted standard deviation, in the unit of the component
+  double configured = 0.0;  ///< what the run started from
+};
+
 /// A landmark of the estimated map.
 struct LandmarkEstimate {
   std::int64_t id = 0;         ///< identity from the log, else a running number
@@ -42,6 +49,7 @@ struct StepRecord {
   int nis_dof = 0;   ///< degrees of freedom of `nis`
   int accepted = 0, gated = 0, ambiguous = 0, new_landmarks = 0;
   std::vector<CalibrationValue> calibration;
+  std::vector<AdaptedNoise> noise;  ///< the same names in every step of a run
   std::string event;  ///< e.g. "disturbance", "relocalized", "lost"; empty where nothing happened
   double step_ms = 0.0;  ///< wall time of the step; never written to trajectory.csv
 };

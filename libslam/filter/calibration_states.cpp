@@ -64,9 +64,24 @@ void CalibrationStates::observe(const GaussianState& state, BlockId pose, const 
     jacobian_.rightCols(static_cast<Eigen::Index>(sensor_.size())) = sensor->excitation(moved);
   }
   excitation_.observe(jacobian_, to_robot * step.cov_noise * to_robot.transpose(), dt);
+  consider();
+}
+
+void CalibrationStates::consider() {
+  watched_ = true;
   considered_.clear();
   for (std::size_t i = 0; i < blocks_.size(); ++i)
     if (!excitation_.excited(i)) considered_.push_back(blocks_[i]);
+}
+
+std::vector<double> CalibrationStates::memory() const {
+  return watched_ ? excitation_.memory() : std::vector<double>();
+}
+
+void CalibrationStates::remember(std::span<const double> memory) {
+  if (memory.empty()) return;
+  excitation_.remember(memory);
+  consider();
 }
 
 void CalibrationStates::diffuse(GaussianState& state, double dt) const {

@@ -25,6 +25,8 @@ class CalibrationStates {
   void add_to(GaussianState& state, Linearizer& linearizer);
 
   bool empty() const { return blocks_.empty(); }
+  /// All, those of the motion first.
+  const CalibrationBlocks& blocks() const { return blocks_; }
   const CalibrationBlocks& of_motion() const { return motion_; }
   const CalibrationBlocks& of_sensor() const { return sensor_; }
 
@@ -38,15 +40,24 @@ class CalibrationStates {
   /// Parameters that are not excited now: they count with their uncertainty, but do not learn.
   std::span<const BlockId> considered() const { return considered_; }
 
+  /// What the monitor of the excitation remembers (policy/excitation.hpp); empty where it has seen
+  /// nothing.
+  std::vector<double> memory() const;
+  /// Goes on from `memory` of the same parameters. Throws std::invalid_argument like Excitation.
+  void remember(std::span<const double> memory);
+
   std::vector<CalibrationValue> values(const GaussianState& state) const;
   /// Every estimate is finite and every variance finite and not negative.
   bool healthy(const GaussianState& state) const;
 
  private:
+  void consider();
+
   std::vector<CalibrationSpec> parameters_;  // of the motion, then of the sensor
   std::size_t motion_count_;
   CalibrationBlocks blocks_, motion_, sensor_;
   Excitation excitation_;
+  bool watched_ = false;
   Eigen::Matrix3Xd jacobian_;
   std::vector<BlockId> considered_;
 };

@@ -19,6 +19,10 @@ EkfSlamParts checked(EkfSlamParts parts) {
     throw std::invalid_argument("EkfSlam notices disturbances by landmarks alone");
   if (parts.displacement && parts.linearization)
     throw std::invalid_argument("EkfSlam linearizes displacements at the estimate");
+  if (parts.map && (parts.displacement || parts.linearization))
+    throw std::invalid_argument(
+        "EkfSlam starts in a map with a measurement model of landmarks, linearized at the "
+        "estimate");
   return parts;
 }
 
@@ -57,6 +61,38 @@ EkfSlam::EkfSlam(EkfSlamParts parts)
       state_.add(pose, parts_.start.size() > 0 ? parts_.start : origin_of(pose), parts_.cov_start);
   linearizer_.add_block(state_, pose_);
   calibration_.add_to(state_, linearizer_);
+  if (parts_.map) start_in_map();
+}
+
+void EkfSlam::start_in_map() {
+  enter_map(*parts_.map,
+            {state_, pose_, calibration_, parts_.registry, parts_.measurement->landmark_spec()});
+  give_landmarks(parts_.map->landmarks_given);
+  parts_.map.reset();
+}
+
+void EkfSlam::give_landmarks(bool given) {
+  landmarks_given_ = given;
+  considered_.clear();
+  if (given)
+    for (const RegisteredLandmark& landmark : parts_.registry.landmarks())
+      if (!state_.is_constant(landmark.block)) considered_.push_back(landmark.block);
+  given_ = considered_.size();
+}
+
+SavedMap EkfSlam::saved_map() const {
+  if (!parts_.measurement) throw std::invalid_argument("a filter of displacements has no map");
+  return leave_map(state_, pose_, calibration_, parts_.registry,
+                   parts_.measurement->landmark_spec());
+}
+
+std::span<const BlockId> EkfSlam::considered() {
+  const std::span<const BlockId> calibration =
+      disturbed() ? std::span<const BlockId>(calibration_.all()) : calibration_.considered();
+  if (given_ == 0) return calibration;
+  considered_.resize(given_);
+  considered_.insert(considered_.end(), calibration.begin(), calibration.end());
+  return considered_;
 }
 
 const DisplacementModel* EkfSlam::displacement_model() const {
@@ -71,11 +107,17 @@ void EkfSlam::propagate(const MotionAction* action) {
     return;
   }
   linearizer_.linearize(*parts_.motion, state_, pose_, calibration_.of_motion(), *action, step_);
+  if (parts_.process) scale_process_noise();
   if (!calibration_.empty())
     calibration_.observe(state_, pose_, step_, action->dt, displacement_model());
   ekf_.propagate(state_, step_);
   linearizer_.moved(state_, pose_);
   calibration_.diffuse(state_, action->dt);
+}
+
+void EkfSlam::scale_process_noise() {
+  for (const BlockJacobian& column : step_.wrt)
+    if (column.block == pose_) parts_.process->scale(column.jacobian, step_.cov_noise);
 }
 
 UpdateOutcome EkfSlam::measure_displacement(const Feature& reading) {
@@ -110,8 +152,13 @@ UpdateOutcome EkfSlam::update(std::span<const Feature> features) {
 
 AssociatedObservation EkfSlam::associate(std::span<const Feature> features) {
   const PhaseTimer timer(times_, Phase::kAssociate);
-  PairTest test({state_, pose_, ekf_, linearizer_, *parts_.measurement, parts_.registry}, features);
+  PairTest test(
+      {state_, pose_, ekf_, linearizer_, *parts_.measurement, parts_.registry, selected_pairs_},
+      features);
   parts_.associator->associate(features, parts_.registry, test, verdicts_);
+  if (landmarks_given_)
+    for (Verdict& verdict : verdicts_)
+      if (verdict.outcome == Outcome::kNew) verdict.outcome = Outcome::kAmbiguous;
   linearize_pairs(features);
   return {features, verdicts_, accepted(), measured_};
 }
@@ -150,8 +197,7 @@ void EkfSlam::respond(std::span<const Feature> features, UpdateOutcome& outcome)
 void EkfSlam::correct(std::span<const Feature> features, UpdateOutcome& outcome) {
   const PhaseTimer timer(times_, Phase::kUpdate);
   const Eigen::Vector2d before = state_.estimate(pose_).head<2>();
-  const Correction correction = ekf_.correct(
-      state_, pose_, accepted(), disturbed() ? calibration_.all() : calibration_.considered());
+  const Correction correction = ekf_.correct(state_, pose_, accepted(), considered());
   if (correction.applied) {
     linearizer_.corrected(state_, pose_, before);
     outcome.accepted = static_cast<int>(used_.size());
@@ -162,6 +208,8 @@ void EkfSlam::correct(std::span<const Feature> features, UpdateOutcome& outcome)
       for (std::size_t i = 0; i < used_.size(); ++i) postfits_[i].feature = used_[i];
       parts_.noise->observe(features, postfits_);
     }
+    if (parts_.process && !disturbed())
+      parts_.process->observe(ekf_.look_back(accepted(), pose_, state_.size(pose_)));
   } else {
     // An innovation covariance that is not positive definite: nothing was used.
     for (Verdict& verdict : verdicts_)
@@ -175,19 +223,34 @@ void EkfSlam::correct(std::span<const Feature> features, UpdateOutcome& outcome)
 
 void EkfSlam::add_landmarks(std::span<const Feature> features, UpdateOutcome& outcome) {
   const PhaseTimer timer(times_, Phase::kAugment);
-  for (const Verdict& verdict : verdicts_)
-    if (verdict.outcome == Outcome::kPaired) parts_.registry.record_sighting(verdict.landmark);
+  for (std::size_t i = 0; i < features.size(); ++i)
+    if (verdicts_[i].outcome == Outcome::kPaired)
+      parts_.registry.record_sighting(verdicts_[i].landmark, features[i].appearance);
   for (std::size_t i = 0; i < features.size(); ++i) {
     if (verdicts_[i].outcome != Outcome::kNew) continue;
+    if (!parts_.measurement->initializable(features[i])) {
+      verdicts_[i].outcome = Outcome::kAmbiguous;
+      ++outcome.ambiguous;
+      continue;
+    }
     linearizer_.initialize(*parts_.measurement, state_, pose_, features[i], initialization_);
     const BlockId block = state_.augment(parts_.measurement->landmark_spec(), initialization_);
     linearizer_.added(state_, pose_, block, features[i].id);
     verdicts_[i].landmark = parts_.registry.size();
-    parts_.registry.add(block, features[i].id);
+    parts_.registry.add(block, features[i].id, features[i].appearance);
     ++outcome.new_landmarks;
   }
   outcome.verdicts = verdicts_;
-  for (const BlockId given_up : parts_.registry.record_update()) state_.remove(given_up);
+  const std::vector<BlockId> given_up = parts_.registry.record_update();
+  for (const BlockId block : given_up) state_.remove(block);
+  if (landmarks_given_ && !given_up.empty()) give_landmarks(true);
+}
+
+std::vector<AdaptedNoise> EkfSlam::noise() const {
+  std::vector<AdaptedNoise> all;
+  if (parts_.noise) all = parts_.noise->noise();
+  if (parts_.process) all.push_back(parts_.process->noise());
+  return all;
 }
 
 std::vector<LandmarkEstimate> EkfSlam::landmarks(bool with_provisional) const {

@@ -6,11 +6,24 @@ namespace libslam {
 
 std::optional<Match> PairTest::test(std::size_t feature, std::size_t landmark, double limit) {
   const BlockId block = parts_.registry.landmarks()[landmark].block;
-  if (std::isfinite(limit) && far_apart(feature, block, limit)) return std::nullopt;
+  const bool bounded = std::isfinite(limit) && parts_.measurement.bounded_in_map();
+  if (bounded && far_apart(feature, block, limit)) return std::nullopt;
   parts_.linearizer.linearize(parts_.measurement, parts_.state, parts_.pose, block,
                               features_[feature], measurement_);
+  if (!measurement_.innovation.allFinite()) return std::nullopt;
   const Innovation innovation = parts_.ekf.innovate(parts_.state, measurement_);
   return Match{innovation.mahalanobis2, innovation.log_det};
+}
+
+void PairTest::select(std::span<const Pairing> pairs) {
+  parts_.selected.clear();
+  for (const auto& [feature, landmark] : pairs) {
+    parts_.linearizer.linearize(parts_.measurement, parts_.state, parts_.pose,
+                                parts_.registry.landmarks()[landmark].block, features_[feature],
+                                measurement_);
+    parts_.selected.add(measurement_);
+  }
+  parts_.selected.finish(parts_.state);
 }
 
 // In landmark space e = l_feature - l_map has covariance C <= 2 (C_feature + C_map), whatever

@@ -47,12 +47,10 @@ void RecentSightings::move(const Eigen::Vector3d& increment, const Eigen::Matrix
     position = to_new * (position - increment.head<2>());
     Eigen::Matrix<double, 2, 3> wrt_increment;
     wrt_increment << -to_new, Eigen::Vector2d(position.y(), -position.x());
-    spread = to_new * spread * to_new.transpose() +
-             wrt_increment * cov * wrt_increment.transpose();
+    spread = to_new * spread * to_new.transpose() + wrt_increment * cov * wrt_increment.transpose();
   }
   for (auto& [view, age] : views_) {
-    view.T_robot_sensor.head<2>() =
-        to_new * (view.T_robot_sensor.head<2>() - increment.head<2>());
+    view.T_robot_sensor.head<2>() = to_new * (view.T_robot_sensor.head<2>() - increment.head<2>());
     view.T_robot_sensor[2] = wrap_angle(view.T_robot_sensor[2] - increment[2]);
   }
 }

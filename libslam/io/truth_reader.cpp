@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <filesystem>
@@ -20,6 +21,23 @@ double yaw_of_quaternion(double x, double y, double z, double w) {
   return std::atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z));
 }
 
+/// Finer than the nine decimals of a TUM file can tell.
+constexpr double kLevel = 1e-9;
+
+/// Whether a path leaves the plane z = 0 or the robot ever rolls or pitches.
+bool leaves_the_plane(const std::vector<SpatialPose>& path) {
+  return std::any_of(path.begin(), path.end(), [](const SpatialPose& pose) {
+    return std::abs(pose.position.z()) > kLevel || std::abs(pose.rotation.x()) > kLevel ||
+           std::abs(pose.rotation.y()) > kLevel;
+  });
+}
+
+Eigen::Quaterniond rotation_of(double yaw, double pitch, double roll) {
+  return Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()) *
+         Eigen::AngleAxisd(pitch, Eigen::Vector3d::UnitY()) *
+         Eigen::AngleAxisd(roll, Eigen::Vector3d::UnitX());
+}
+
 void read_tum_row(const TextReader& row, Trajectory& path) {
   const double time = row.number(0);
   if (!path.times.empty() && time < path.times.back()) row.reject("time goes backwards");
@@ -29,6 +47,13 @@ void read_tum_row(const TextReader& row, Trajectory& path) {
   path.times.push_back(time);
   path.poses.emplace_back(row.number(1), row.number(2),
                           yaw_of_quaternion(q.x(), q.y(), q.z(), q.w()));
+  path.spatial.push_back({{row.number(1), row.number(2), row.number(3)}, Eigen::Quaterniond(q)});
+}
+
+void read_mrpt_row(const TextReader& row, Trajectory& path) {
+  path.poses.emplace_back(row.number(0), row.number(1), row.number(3));
+  path.spatial.push_back({{row.number(0), row.number(1), row.number(2)},
+                          rotation_of(row.number(3), row.number(4), row.number(5))});
 }
 
 TrueLandmark read_landmark_row(const TextReader& row) {
@@ -60,9 +85,10 @@ Trajectory read_true_path(const std::string& file) {
     if (columns == kTumColumns)
       read_tum_row(row, path);
     else
-      path.poses.emplace_back(row.number(0), row.number(1), row.number(3));
+      read_mrpt_row(row, path);
   }
   if (path.poses.empty()) throw InputError(file + ": holds no poses");
+  if (!leaves_the_plane(path.spatial)) path.spatial = {};
   return path;
 }
 

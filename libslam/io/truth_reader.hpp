@@ -10,10 +10,12 @@
 namespace libslam {
 
 /// A path, recognised by its number of columns:
-///   8  TUM: t x y z qx qy qz qw (time [s], quaternion with w last); planar pose x, y, yaw;
+///   8  TUM: t x y z qx qy qz qw (time [s], quaternion with w last);
 ///   6  MRPT: x y z yaw pitch roll without times; row i belongs to step i of the log, counting a
 ///   leading
 ///      frame as step 0 (checked on kf-slam_demo: pair k is row k + 1, both from 0).
+/// Poses are x, y and yaw; where the path leaves the plane z = 0 or rolls or pitches anywhere,
+/// `spatial` holds the full ones.
 /// Throws InputError where a row cannot be read, times go backwards or a quaternion is zero.
 Trajectory read_true_path(const std::string& file);
 

@@ -33,9 +33,10 @@ class MotionModel {
   virtual void linearize(const GaussianState& state, BlockId pose, const CalibrationBlocks& blocks,
                          const MotionAction& action, MotionStep& step) const = 0;
 
-  /// Draws the pose after `action` from `pose` with the calibration values given.
-  virtual Eigen::Vector3d sample(const Eigen::Vector3d& pose, const Eigen::VectorXd& calibration,
-                                 const MotionAction& action, std::mt19937_64& random) const = 0;
+  /// Draws the pose after `action` from `pose` (storage of `pose_spec`) with the calibration values
+  /// given.
+  virtual BlockVector sample(const BlockVector& pose, const Eigen::VectorXd& calibration,
+                             const MotionAction& action, std::mt19937_64& random) const = 0;
 };
 
 }  // namespace libslam

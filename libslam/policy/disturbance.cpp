@@ -46,8 +46,7 @@ bool Disturbance::judge(double nis, int dof, bool estranged) {
     all.nis += one.nis;
     all.dof += one.dof;
   }
-  const bool triggered =
-      estranged || beyond_trigger(nis, dof) || beyond_trigger(all.nis, all.dof);
+  const bool triggered = estranged || beyond_trigger(nis, dof) || beyond_trigger(all.nis, all.dof);
   began_ = triggered && !lasts_;
   lasts_ = lasts_ || triggered;
   if (!lasts_) return false;

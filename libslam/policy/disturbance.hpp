@@ -34,12 +34,12 @@ enum class Inflation {
 
 struct DisturbanceOptions {
   Inflation inflation = Inflation::kMaximumLikelihood;
-  int window = 5;                      ///< updates
+  int window = 5;  ///< updates
   double trigger_probability = 0.99999;
   double release_probability = 0.95;
-  int hold = 5;                        ///< updates
+  int hold = 5;                              ///< updates
   BlockVector sigma = BlockVector::Ones(3);  ///< C = diag(sigma)^2, tangent of the pose
-  double max_factor = 100.0;           ///< kWholeState
+  double max_factor = 100.0;                 ///< kWholeState
 };
 
 class Disturbance {

@@ -1,13 +1,12 @@
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <numbers>
 #include <stdexcept>
 
 #include <Eigen/Dense>
 #include <mrpt/math/wrap2pi.h>
 
 #include <libslam/result/metrics.hpp>
+#include <libslam/result/normalized_error.hpp>
 #include <libslam/result/run_axis.hpp>
 #include <libslam/state/chi_square.hpp>
 
@@ -41,14 +40,6 @@ PathErrors::Position position_errors(const TPose2D& T, const Eigen::Matrix2Xd& e
   return errors;
 }
 
-/// Largest of 1, 2, 5 times a power of ten that is not above `value`.
-double round_down(double value) {
-  const double decade = std::pow(10.0, std::floor(std::log10(value)));
-  for (const double factor : {5.0, 2.0})
-    if (factor * decade <= value) return factor * decade;
-  return decade;
-}
-
 std::vector<double> cumulative_length(const Trajectory& truth, std::span<const PoseMatch> matches) {
   std::vector<double> length(matches.size(), 0.0);
   for (std::size_t i = 1; i < matches.size(); ++i)
@@ -73,7 +64,8 @@ double median(std::vector<double> values) {
 }  // namespace
 
 PathErrors compare_path(std::span<const EstimatedPose> estimate, const Trajectory& truth,
-                        std::span<const PoseMatch> matches) {
+                        std::span<const PoseMatch> matches,
+                        const std::optional<TPose2D>& T_truth_filter) {
   PathErrors errors;
   errors.poses = static_cast<int>(matches.size());
   if (matches.empty()) return errors;
@@ -83,11 +75,13 @@ PathErrors compare_path(std::span<const EstimatedPose> estimate, const Trajector
       positions(matches, [&](const PoseMatch& m) { return truth.poses[m.truth]; });
   if (const auto fit = fit_rigid(points, true_points))
     errors.aligned = position_errors(*fit, points, true_points);
-  if (!truth.has_heading) return errors;
+  if (!truth.has_heading && !T_truth_filter) return errors;
 
-  const TPose2D T =
-      place_on(estimate[matches.front().estimate].pose, truth.poses[matches.front().truth]);
+  const TPose2D T = T_truth_filter ? *T_truth_filter
+                                   : place_on(estimate[matches.front().estimate].pose,
+                                              truth.poses[matches.front().truth]);
   errors.raw = position_errors(T, points, true_points);
+  if (!truth.has_heading) return errors;
   errors.heading.emplace();
   double squares = 0.0;
   for (const PoseMatch& m : matches) {
@@ -104,67 +98,42 @@ std::optional<RelativeErrors> compare_relative(std::span<const EstimatedPose> es
                                                std::span<const PoseMatch> matches,
                                                double distance_m) {
   if (!truth.has_heading || matches.size() < 2) return std::nullopt;
-  const std::vector<double> length = cumulative_length(truth, matches);
-  if (distance_m <= 0.0 && length.back() > 0.0) distance_m = round_down(length.back() / 10.0);
-  RelativeErrors errors;
-  errors.distance_m = distance_m;
-  for (std::size_t i = 0, j = 0; i < matches.size() && distance_m > 0.0; ++i) {
-    while (j < matches.size() && length[j] - length[i] < distance_m) ++j;
-    if (j == matches.size()) break;
-    const Eigen::Vector3d moved =
-        between(estimate[matches[i].estimate].pose, estimate[matches[j].estimate].pose);
-    const Eigen::Vector3d moved_truly =
-        between(truth.poses[matches[i].truth], truth.poses[matches[j].truth]);
-    const Eigen::Vector3d error = between(moved_truly, moved);
-    errors.trans_percent += 100.0 * error.head<2>().norm() / distance_m;
-    errors.rot_deg_per_m += std::abs(error.z()) * 180.0 / std::numbers::pi / distance_m;
-    ++errors.stretches;
-  }
-  if (errors.stretches == 0) return std::nullopt;
-  errors.trans_percent /= errors.stretches;
-  errors.rot_deg_per_m /= errors.stretches;
-  return errors;
+  const auto error = [&](std::size_t i, std::size_t j) -> RelativePoseError {
+    const PoseMatch &from = matches[i], &to = matches[j];
+    const Eigen::Vector3d moved = between(estimate[from.estimate].pose, estimate[to.estimate].pose);
+    const Eigen::Vector3d moved_truly = between(truth.poses[from.truth], truth.poses[to.truth]);
+    const Eigen::Vector3d difference = between(moved_truly, moved);
+    return {difference.head<2>().norm(), std::abs(difference.z())};
+  };
+  return average_over_stretches(cumulative_length(truth, matches), distance_m, error);
 }
 
-// Smallest eigenvalue of a correlation matrix that is more than the rounding of its entries, with a
-// margin: the first motion from a known pose has a covariance of rank two.
-constexpr double kSingular = 1e-12;
-
 std::vector<double> pose_nees(std::span<const EstimatedPose> estimate, const Trajectory& truth,
-                              std::span<const PoseMatch> matches) {
+                              std::span<const PoseMatch> matches,
+                              const std::optional<TPose2D>& T_truth_filter) {
   if (!truth.has_heading) throw std::invalid_argument("pose NEES needs a true heading");
   std::vector<double> values;
   if (matches.empty()) return values;
   values.reserve(matches.size());
   const TPose2D T_filter_truth =
-      invert(place_on(estimate[matches.front().estimate].pose, truth.poses[matches.front().truth]));
+      invert(T_truth_filter ? *T_truth_filter
+                            : place_on(estimate[matches.front().estimate].pose,
+                                       truth.poses[matches.front().truth]));
   for (const PoseMatch& m : matches) {
     Eigen::Vector3d e =
         estimate[m.estimate].pose - transform_pose(T_filter_truth, truth.poses[m.truth]);
     e.z() = wrapToPi(e.z());
-    // Scaled by its standard deviations, so that a direction without variance shows in any unit.
-    const Eigen::Matrix3d& cov = estimate[m.estimate].cov;
-    const Eigen::Vector3d scale = cov.diagonal().cwiseSqrt().cwiseInverse();
-    if (!scale.allFinite()) {
-      values.push_back(std::numeric_limits<double>::quiet_NaN());
-      continue;
-    }
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> spectrum(scale.asDiagonal() * cov *
-                                                                  scale.asDiagonal());
-    const Eigen::Vector3d along = spectrum.eigenvectors().transpose() * scale.cwiseProduct(e);
-    const bool regular = spectrum.eigenvalues()[0] > kSingular;
-    values.push_back(regular ? along.cwiseAbs2().cwiseQuotient(spectrum.eigenvalues()).sum()
-                             : std::numeric_limits<double>::quiet_NaN());
+    values.push_back(normalized_square<3>(e, estimate[m.estimate].cov));
   }
   return values;
 }
 
 std::optional<NeesSummary> summarize_nees(std::span<const EstimatedPose> estimate,
                                           std::span<const PoseMatch> matches,
-                                          std::span<const double> values) {
+                                          std::span<const double> values, int dof) {
   if (matches.empty()) return std::nullopt;
-  const double lower = chi_square_quantile(0.025, 3), upper = chi_square_quantile(0.975, 3);
-  const double ellipsoid = chi_square_quantile(0.95, 3);
+  const double lower = chi_square_quantile(0.025, dof), upper = chi_square_quantile(0.975, dof);
+  const double ellipsoid = chi_square_quantile(0.95, dof);
   const RunAxis axis(estimate);
   const double begin = axis.at(estimate[matches.front().estimate]);
   const double span = axis.at(estimate[matches.back().estimate]) - begin;
@@ -172,6 +141,7 @@ std::optional<NeesSummary> summarize_nees(std::span<const EstimatedPose> estimat
   std::array<int, 4> counts{};
   std::vector<double> finite;
   NeesSummary summary;
+  summary.dof = dof;
   for (std::size_t i = 0; i < matches.size(); ++i) {
     if (!std::isfinite(values[i])) continue;
     const double part = span > 0.0 ? (axis.at(estimate[matches[i].estimate]) - begin) / span : 0.0;
@@ -191,40 +161,6 @@ std::optional<NeesSummary> summarize_nees(std::span<const EstimatedPose> estimat
   for (std::size_t q = 0; q < 4; ++q)
     if (counts[q] > 0) summary.quarter_mean[q] = sums[q] / counts[q];
   return summary;
-}
-
-std::map<std::string, double> calibration_means(const std::vector<CalibrationValue>& calibration) {
-  std::map<std::string, double> means;
-  for (const CalibrationValue& value : calibration) means[value.name] = value.mean;
-  return means;
-}
-
-TruthComparison compare_with_truth(std::span<const EstimatedPose> robot, const LandmarkMap& map,
-                                   const std::map<std::string, double>& calibration,
-                                   const GroundTruth& truth, LandmarkIdentity identity) {
-  const std::vector<EstimatedPose> estimate = path_of_point(robot, truth.path.point_on_robot);
-  TruthComparison result;
-  const std::vector<PoseMatch> matches = match_poses(estimate, truth.path);
-  if (!matches.empty()) {
-    result.path = compare_path(estimate, truth.path, matches);
-    result.relative = compare_relative(estimate, truth.path, matches);
-    if (truth.path.has_heading) {
-      result.nees = summarize_nees(estimate, matches, pose_nees(estimate, truth.path, matches));
-      result.placement = place_on(estimate[matches.front().estimate].pose,
-                                  truth.path.poses[matches.front().truth]);
-    } else {
-      result.placement = fit_rigid(
-          positions(matches, [&](const PoseMatch& m) { return estimate[m.estimate].pose; }),
-          positions(matches, [&](const PoseMatch& m) { return truth.path.poses[m.truth]; }));
-    }
-  }
-  if (!truth.landmarks.empty())
-    result.map = compare_map(map, truth.landmarks, identity, result.placement,
-                             !matches.empty() && truth.path.has_heading);
-  for (const auto& [name, value] : calibration)
-    if (const auto found = truth.calibration.find(name); found != truth.calibration.end())
-      result.calibration_error[name] = value - found->second;
-  return result;
 }
 
 }  // namespace libslam

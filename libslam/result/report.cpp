@@ -17,6 +17,8 @@ std::string make_report(const ReportInput& input, const std::filesystem::path& l
   page.data = make_report_data(input);
   page.stills = still_drawings_html(page.data);
   page.script = kReportScript;
+  page.below = pictures_html(input.pictures);
+  page.has_pictures = !input.pictures.empty();
   return assemble_page(page, library_folder);
 }
 

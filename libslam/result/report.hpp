@@ -8,6 +8,7 @@
 #include <libslam/data/ground_truth.hpp>
 #include <libslam/map/landmark_map.hpp>
 #include <libslam/result/report_page.hpp>
+#include <libslam/result/report_picture.hpp>
 #include <libslam/result/run_summary.hpp>
 #include <libslam/result/series_envelope.hpp>
 #include <libslam/result/trajectory.hpp>
@@ -18,10 +19,11 @@ namespace libslam {
 struct ReportInput {
   const RunSummary& summary;
   const LandmarkMap& map;
-  std::span<const EstimatedPose> path;
+  PathView path;
   std::filesystem::path trajectory_csv;  ///< read once more for innovations and calibration
   const GroundTruth& truth;              ///< may be empty
   const SeriesEnvelope& step_times;      ///< [ms] over the number of the step
+  std::span<const ReportPicture> pictures{};
 };
 
 /// The page as HTML, see assemble_page. Throws like TrajectoryReader.

@@ -1,10 +1,6 @@
 #pragma once
 // The map of the report: path, truth, landmarks and ellipses.
 
-#include <optional>
-#include <span>
-
-#include <mrpt/math/TPose2D.h>
 #include <nlohmann/json.hpp>
 
 #include <libslam/result/report.hpp>
@@ -14,11 +10,11 @@ namespace libslam {
 /// Six significant digits keep the page small and are finer than a pixel; null where not finite.
 nlohmann::ordered_json short_number(double value);
 
-/// `path`, `truth` {x, y}, `truth_is_sparse`, `pose_ellipses` [x, y, xx, xy, yy], `landmarks` (an
-/// ellipse, id, times seen), `true_landmarks` [x, y, id], `ellipse_scale` (sigmas of a 95 %
-/// ellipse). `placement` is T_truth_filter; without it the frame of the truth is unknown and the
-/// truth stays out.
-nlohmann::ordered_json make_map_data(const ReportInput& input, std::span<const EstimatedPose> path,
-                                     const std::optional<mrpt::math::TPose2D>& placement);
+/// Adds `map`, seen from above, and of a run in space whose height varies `side` with z in the
+/// place of y: `path`, `truth` {x, y}, `truth_is_sparse`, `pose_ellipses` [x, y, xx, xy, yy],
+/// `landmarks` (an ellipse, id, times seen), `true_landmarks` [x, y, id], `events` [x, y, what] if
+/// any, `ellipse_scale` (sigmas of a 95 % ellipse). All in the frame of the truth; without a
+/// placement in summary.truth that frame is unknown and the truth stays out.
+void add_map_data(nlohmann::ordered_json& data, const ReportInput& input);
 
 }  // namespace libslam

@@ -70,6 +70,7 @@ std::string assemble_page(const PageContent& content, const std::filesystem::pat
   const std::string plots =
       library ? std::string("<main id=\"plots\"></main>\n") : kInstallHint + content.stills;
   return fill_template(kReportPage, {{"title", escape_html(content.title)},
+                                     {"policy", content.has_pictures ? "; img-src data:" : ""},
                                      {"style", std::string(kReportStyle) + content.style},
                                      {"source", escape_html(content.source)},
                                      {"program", escape_html(content.program)},

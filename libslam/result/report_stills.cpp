@@ -63,7 +63,8 @@ std::string corner_label(double x, double y, const std::string& text,
          "\" y=\"" + number(y) + "\">" + escape_html(text) + "</text>";
 }
 
-std::string map_drawing(const Json& map) {
+/// `vertical`: name of the axis that `y` of the map is drawn along.
+std::string map_drawing(const Json& map, const std::string& vertical) {
   Interval x, y;
   for (const char* path : {"path", "truth"}) {
     x.add_all(map[path]["x"]);
@@ -91,8 +92,9 @@ std::string map_drawing(const Json& map) {
   add_dots("true_landmarks", "truth-dot", 4.5);
   add_dots("landmarks", "estimate-dot", 2.5);
   svg += corner_label(10.0, height - 8.0,
-                      "x " + label(x.low) + " \u2026 " + label(x.high) + " m, y " + label(y.low) +
-                          " \u2026 " + label(y.high) + " m; estimate blue, truth orange");
+                      "x " + label(x.low) + " \u2026 " + label(x.high) + " m, " + vertical + " " +
+                          label(y.low) + " \u2026 " + label(y.high) +
+                          " m; estimate blue, truth orange");
   return svg + "</svg>";
 }
 
@@ -130,8 +132,11 @@ std::string still_panel_svg(const Json& axis, const Json& t, const Json& panel) 
 }
 
 std::string still_drawings_html(const Json& data) {
-  std::string html =
-      "<section class=\"plot\"><h2>Path and map</h2>" + map_drawing(data["map"]) + "</section>\n";
+  std::string html = "<section class=\"plot\"><h2>Path and map</h2>" +
+                     map_drawing(data["map"], "y") + "</section>\n";
+  if (data.contains("side"))
+    html += "<section class=\"plot\"><h2>From the side</h2>" + map_drawing(data["side"], "z") +
+            "</section>\n";
   for (const Json& plot : data["plots"]) {
     html += "<section class=\"plot\"><h2>" + escape_html(plot["title"].get<std::string>()) +
             "</h2><p class=\"good\">" + escape_html(plot["good"].get<std::string>()) + "</p>";

@@ -76,6 +76,10 @@ void visit_keys(const auto& v, auto& summary) {
     s("skipped", summary.input.skipped);
     s("repaired", summary.input.repaired);
     s("warnings", summary.input.warnings);
+    s.section("map", [&](const auto& map) {
+      map("file", summary.input.map_file);
+      map("sha256", summary.input.map_sha256);
+    });
   });
 }
 
@@ -109,19 +113,36 @@ void visit_health(const auto& v, auto& health) {
 Json result_to_json(const RunSummary::Result& result) {
   Json object = Json::object();
   if (result.pose) object["pose"] = {result.pose->x(), result.pose->y(), result.pose->z()};
+  if (result.pose3d) {
+    const auto& p = result.pose3d->position;
+    const auto& q = result.pose3d->rotation;
+    object["pose3d"] = {p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w()};
+  }
+  if (result.placement == Placement::none) object["placement"] = "none";
   object["landmarks"] = result.landmarks;
   for (const CalibrationValue& value : result.calibration)
     object["calibration"][value.name] = {
         {"mean", value.mean}, {"sigma", value.sigma}, {"observable", value.observable}};
+  for (const AdaptedNoise& noise : result.noise)
+    object["noise"][noise.name] = {{"sigma", noise.sigma}, {"configured", noise.configured}};
   return object;
 }
 
-RunSummary::Result result_from_json(const Json& object) {
-  RunSummary::Result result;
+void read_poses(const Json& object, RunSummary::Result& result) {
   if (const auto pose = object.find("pose"); pose != object.end()) {
     const auto numbers = pose->get<std::array<double, 3>>();
     result.pose.emplace(numbers[0], numbers[1], numbers[2]);
   }
+  if (const auto pose = object.find("pose3d"); pose != object.end()) {
+    const auto n = pose->get<std::array<double, 7>>();
+    result.pose3d = {{n[0], n[1], n[2]}, {n[6], n[3], n[4], n[5]}};
+  }
+  if (object.value("placement", "first") == "none") result.placement = Placement::none;
+}
+
+RunSummary::Result result_from_json(const Json& object) {
+  RunSummary::Result result;
+  read_poses(object, result);
   result.landmarks = object.value("landmarks", std::int64_t{0});
   if (const auto calibration = object.find("calibration"); calibration != object.end())
     for (const auto& [name, value] : calibration->items()) {
@@ -131,7 +152,26 @@ RunSummary::Result result_from_json(const Json& object) {
       value.at("sigma").get_to(entry.sigma);
       value.at("observable").get_to(entry.observable);
     }
+  if (const auto noises = object.find("noise"); noises != object.end())
+    for (const auto& [name, value] : noises->items())
+      result.noise.push_back(
+          {name, value.at("sigma").get<double>(), value.at("configured").get<double>()});
   return result;
+}
+
+Json events_to_json(const std::vector<RunEvent>& events) {
+  Json list = Json::array();
+  for (const RunEvent& event : events)
+    list.push_back({{"time", event.time}, {"step", event.step}, {"what", event.what}});
+  return list;
+}
+
+std::vector<RunEvent> events_from_json(const Json& list) {
+  std::vector<RunEvent> events;
+  for (const Json& event : list)
+    events.push_back({event.at("time").get<double>(), event.at("step").get<std::int64_t>(),
+                      event.at("what").get<std::string>()});
+  return events;
 }
 
 }  // namespace
@@ -145,6 +185,8 @@ std::string to_json_text(const RunSummary& summary) {
                  [&](const Writer& s) { visit_timing(s, summary.timing, summary.timing.step_ms); });
   if (summary.timing.phases.empty()) object["timing"].erase("phases");
   writer.section("health", [&](const Writer& s) { visit_health(s, summary.health); });
+  if (!summary.health.events.empty())
+    object["health"]["events"] = events_to_json(summary.health.events);
   if (summary.truth)
     if (Json truth = truth_to_json(*summary.truth); !truth.empty()) object["truth"] = truth;
   // Warnings may quote bytes of an untrusted log: replace what is not UTF-8.
@@ -166,6 +208,8 @@ RunSummary parse_run_summary(const std::string& text, const std::string& name) {
       summary.timing.step_ms = step_ms;
     });
     reader.section("health", [&](const Reader& s) { visit_health(s, summary.health); });
+    if (object.contains("health") && object["health"].contains("events"))
+      summary.health.events = events_from_json(object["health"]["events"]);
     if (object.contains("truth")) summary.truth = truth_from_json(object["truth"]);
     return summary;
   } catch (const Json::exception& error) {

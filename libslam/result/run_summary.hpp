@@ -9,14 +9,22 @@
 #include <string>
 #include <vector>
 
+#include <libslam/data/spatial_pose.hpp>
 #include <libslam/data/step_record.hpp>
-#include <libslam/result/metrics.hpp>
+#include <libslam/result/truth_comparison.hpp>
 
 namespace libslam {
 
 /// Wall time of a step [ms].
 struct StepTime {
   double mean = 0, p50 = 0, p95 = 0, max = 0;
+};
+
+/// Something that happened in a step, see StepRecord::event.
+struct RunEvent {
+  double time = 0.0;      ///< [s], as in the log
+  std::int64_t step = 0;  ///< running number of the step
+  std::string what;
 };
 
 /// The keys of run.json; what is absent here is absent there. SI units, radians, seconds.
@@ -27,11 +35,16 @@ struct RunSummary {
     double duration_s = 0.0;
     std::int64_t skipped = 0, repaired = 0;
     std::vector<std::string> warnings;
+    std::optional<std::string> map_file, map_sha256;  ///< of the map that the run started in
   };
   struct Result {
     std::optional<Eigen::Vector3d> pose;  ///< last pose: x [m], y [m], phi [rad]
+    std::optional<SpatialPose> pose3d;    ///< the same of a run in space, instead of `pose`
+    /// `none`: the run localized in a given map, so that its frame is that of the map.
+    Placement placement = Placement::first;
     std::int64_t landmarks = 0;
     std::vector<CalibrationValue> calibration;
+    std::vector<AdaptedNoise> noise;  ///< at the end of the run
   };
   struct Timing {
     double wall_s = 0.0, cpu_s = 0.0;
@@ -45,6 +58,7 @@ struct RunSummary {
     std::optional<double> nis_in_95, gated_fraction, min_eigenvalue;
     std::optional<std::int64_t> disturbances, resamplings, injected;
     std::optional<double> ess_min;
+    std::vector<RunEvent> events;  ///< the first ones, see StepStatistics
   };
 
   std::string program, version, git;

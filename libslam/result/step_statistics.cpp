@@ -47,6 +47,10 @@ void StepStatistics::add(const StepRecord& step) {
   ms_max_ = std::max(ms_max_, step.step_ms);
   step_times_.add(static_cast<double>(step.index), std::span(&step.step_ms, 1));
   calibration_ = step.calibration;
+  noise_ = step.noise;
+  if (step.event.empty()) return;
+  disturbances_ += step.event == "disturbance";
+  if (events_.size() < kMostEvents) events_.push_back({step.time, step.index, step.event});
 }
 
 const StepStatistics::Band& StepStatistics::nis_band(int dof) {
@@ -59,6 +63,7 @@ const StepStatistics::Band& StepStatistics::nis_band(int dof) {
 
 void StepStatistics::fill(RunSummary& summary) const {
   summary.timing.steps = steps_;
+  summary.health.events = events_;
   if (steps_ > 0)
     summary.timing.step_ms = {
         {ms_sum_ / static_cast<double>(steps_), ms_.quantile(0.5), ms_.quantile(0.95), ms_max_}};

@@ -34,7 +34,7 @@ class StepStatistics {
   std::int64_t steps() const { return steps_; }
   std::int64_t updates() const { return updates_; }
 
-  /// Fills steps and step_ms of the timing and nis_mean, nis_in_95 and gated_fraction of the
+  /// Fills steps and step_ms of the timing, nis_mean, nis_in_95, gated_fraction and events of the
   /// health.
   void fill(RunSummary& summary) const;
 
@@ -42,6 +42,13 @@ class StepStatistics {
   const SeriesEnvelope& step_times() const { return step_times_; }
   /// Of the last step.
   const std::vector<CalibrationValue>& calibration() const { return calibration_; }
+  const std::vector<AdaptedNoise>& noise() const { return noise_; }
+  /// Steps whose event is "disturbance".
+  std::int64_t disturbances() const { return disturbances_; }
+  /// The first kMostEvents of them.
+  const std::vector<RunEvent>& events() const { return events_; }
+
+  static constexpr std::size_t kMostEvents = 1000;
 
  private:
   struct Band {
@@ -56,6 +63,9 @@ class StepStatistics {
   std::vector<Band> nis_bands_;  // by degrees of freedom, filled as they occur
   SeriesEnvelope step_times_;
   std::vector<CalibrationValue> calibration_;
+  std::vector<AdaptedNoise> noise_;
+  std::int64_t disturbances_ = 0;
+  std::vector<RunEvent> events_;
 };
 
 }  // namespace libslam

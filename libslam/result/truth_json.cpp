@@ -14,20 +14,28 @@ void write_path(Json& out, const PathErrors& path) {
     out["ate_max_m"] = path.raw->max_m;
     out["rmse_x_m"] = path.raw->rmse_x_m;
     out["rmse_y_m"] = path.raw->rmse_y_m;
+    if (path.raw->rmse_z_m) out["rmse_z_m"] = *path.raw->rmse_z_m;
   }
   if (path.aligned) {
     out["ate_mean_aligned_m"] = path.aligned->mean_m;
     out["ate_max_aligned_m"] = path.aligned->max_m;
     out["rmse_x_aligned_m"] = path.aligned->rmse_x_m;
     out["rmse_y_aligned_m"] = path.aligned->rmse_y_m;
+    if (path.aligned->rmse_z_m) out["rmse_z_aligned_m"] = *path.aligned->rmse_z_m;
   }
   if (path.heading) {
     out["rmse_heading_rad"] = path.heading->rmse_rad;
     out["max_heading_rad"] = path.heading->max_rad;
   }
+  if (path.rotation) {
+    out["rmse_rotation_rad"] = path.rotation->rmse_rad;
+    out["max_rotation_rad"] = path.rotation->max_rad;
+  }
+  if (path.drift_percent) out["drift_percent"] = *path.drift_percent;
 }
 
 void write_nees(Json& out, const NeesSummary& nees) {
+  if (nees.dof != NeesSummary().dof) out["nees_dof"] = nees.dof;
   out["nees_steps"] = nees.steps;
   out["nees_mean"] = nees.mean;
   out["nees_median"] = nees.median;
@@ -65,18 +73,30 @@ PathErrors read_path(const Json& in) {
   PathErrors path;
   path.poses = count(in, "poses");
   if (const auto rmse = read(in, "ate_rmse_m"))
-    path.raw = {*rmse, number(in, "ate_mean_m"), number(in, "ate_max_m"), number(in, "rmse_x_m"),
-                number(in, "rmse_y_m")};
+    path.raw = {*rmse,
+                number(in, "ate_mean_m"),
+                number(in, "ate_max_m"),
+                number(in, "rmse_x_m"),
+                number(in, "rmse_y_m"),
+                read(in, "rmse_z_m")};
   if (const auto rmse = read(in, "ate_rmse_aligned_m"))
-    path.aligned = {*rmse, number(in, "ate_mean_aligned_m"), number(in, "ate_max_aligned_m"),
-                    number(in, "rmse_x_aligned_m"), number(in, "rmse_y_aligned_m")};
+    path.aligned = {*rmse,
+                    number(in, "ate_mean_aligned_m"),
+                    number(in, "ate_max_aligned_m"),
+                    number(in, "rmse_x_aligned_m"),
+                    number(in, "rmse_y_aligned_m"),
+                    read(in, "rmse_z_aligned_m")};
   if (const auto rmse = read(in, "rmse_heading_rad"))
     path.heading = {*rmse, number(in, "max_heading_rad")};
+  if (const auto rmse = read(in, "rmse_rotation_rad"))
+    path.rotation = {*rmse, number(in, "max_rotation_rad")};
+  path.drift_percent = read(in, "drift_percent");
   return path;
 }
 
 NeesSummary read_nees(const Json& in) {
   NeesSummary nees;
+  nees.dof = read<int>(in, "nees_dof").value_or(nees.dof);
   nees.steps = count(in, "nees_steps");
   nees.mean = number(in, "nees_mean");
   nees.median = number(in, "nees_median");

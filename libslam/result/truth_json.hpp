@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include <libslam/result/metrics.hpp>
+#include <libslam/result/truth_comparison.hpp>
 
 namespace libslam {
 

@@ -16,13 +16,13 @@
 namespace libslam::test {
 
 struct DisturbedDrive {
-  std::vector<int> recoveries;         ///< updates until recovered, by event; -1: never
-  std::map<std::string, int> events;   ///< of the filter, by name
-  double landmark_rmse = 0.0;          ///< known identities, in the frame of the filter [m]
-  double position_rmse = 0.0;          ///< over all updates [m]
-  double last_error = 0.0;             ///< of the position at the end [m]
-  int relocalized_after = -1;          ///< updates after the first event
-  bool wrong_recovery = false;         ///< relocalized, and still far off
+  std::vector<int> recoveries;        ///< updates until recovered, by event; -1: never
+  std::map<std::string, int> events;  ///< of the filter, by name
+  double landmark_rmse = 0.0;         ///< known identities, in the frame of the filter [m]
+  double position_rmse = 0.0;         ///< over all updates [m]
+  double last_error = 0.0;            ///< of the position at the end [m]
+  int relocalized_after = -1;         ///< updates after the first event
+  bool wrong_recovery = false;        ///< relocalized, and still far off
 };
 
 /// Recovered: the position error is below twice what it was on average in so many updates before.
@@ -107,8 +107,8 @@ class DisturbedDriver {
     for (const LandmarkEstimate& landmark : map)
       for (const TrueLandmark& truth : simulator_->landmarks())
         if (truth.id == landmark.id)
-          sum += (landmark.mean - transform_back(simulator_->start(),
-                                                 Eigen::Vector2d(truth.position.head<2>())))
+          sum += (landmark.mean -
+                  transform_back(simulator_->start(), Eigen::Vector2d(truth.position.head<2>())))
                      .squaredNorm();
     return std::sqrt(sum / std::max(1.0, static_cast<double>(map.size())));
   }

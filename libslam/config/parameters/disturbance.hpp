@@ -49,10 +49,8 @@ struct DisturbanceParameters {
              1, 10000});
     v.value("sigma_xy", sigma_xy,
             {"m", "Standard deviation of the displacement that is added to the pose.", 1e-6});
-    v.value("sigma_heading_deg", sigma_heading_deg,
-            {"deg", "The same of its turn.", 1e-6, 360});
-    v.value("max_factor", max_factor,
-            {"1", "Largest factor on the covariance (whole_state).", 1});
+    v.value("sigma_heading_deg", sigma_heading_deg, {"deg", "The same of its turn.", 1e-6, 360});
+    v.value("max_factor", max_factor, {"1", "Largest factor on the covariance (whole_state).", 1});
     v.value("near_landmark", near_landmark,
             {"m",
              "Observations without identity that fit no landmark although one is this near are a "
@@ -60,9 +58,9 @@ struct DisturbanceParameters {
              0});
     v.value("relocalize", relocalize,
             {"", "Search the whole map for what is seen when the pose is lost."});
-    v.value("lost_after", lost_after,
-            {"1", "The pose is lost after so many updates in a row that nothing explains.", 1,
-             10000});
+    v.value(
+        "lost_after", lost_after,
+        {"1", "The pose is lost after so many updates in a row that nothing explains.", 1, 10000});
   }
 };
 

@@ -3,6 +3,7 @@
 
 #include <libslam/config/description.hpp>
 #include <libslam/config/parameters/disturbance.hpp>
+#include <libslam/config/parameters/noise_adaptation.hpp>
 
 namespace libslam {
 
@@ -10,6 +11,8 @@ namespace libslam {
 struct PolicyParameters {
   double update_period_s = 0.0;
   int update_every_n = 1;
+  NoiseAdaptationParameters noise_adaptation;
+  ProcessAdaptationParameters process_adaptation;
   DisturbanceParameters disturbance;
 
   void describe(auto& v) {
@@ -19,6 +22,8 @@ struct PolicyParameters {
              "and more frequent updates make the filter overconfident.",
              0});
     v.value("update_every_n", update_every_n, {"1", "Use every n-th observation frame only.", 1});
+    v.section("noise_adaptation", noise_adaptation);
+    v.section("process_adaptation", process_adaptation);
     v.section("disturbance", disturbance);
   }
 };

@@ -1,8 +1,9 @@
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include <Eigen/Dense>
-#include <mrpt/math/TPose2D.h>
+#include <mrpt/math/CQuaternion.h>
 #include <mrpt/math/distributions.h>
 #include <mrpt/opengl/CEllipsoid2D.h>
 #include <mrpt/opengl/CEllipsoid3D.h>
@@ -10,9 +11,11 @@
 #include <mrpt/opengl/COpenGLScene.h>
 #include <mrpt/opengl/CSetOfLines.h>
 #include <mrpt/opengl/stock_objects.h>
+#include <mrpt/poses/CPose3D.h>
 
 #include <libslam/io/exporters/scene_3d.hpp>
 #include <libslam/result/atomic_file.hpp>
+#include <libslam/result/spatial_alignment.hpp>
 
 namespace libslam {
 namespace {
@@ -30,9 +33,9 @@ double grid_spacing(double extent) {
   return 10.0 * decade;
 }
 
-CRenderizable::Ptr make_grid(std::span<const Eigen::Vector3d> path, const LandmarkMap& map) {
+CRenderizable::Ptr make_grid(const std::vector<SpatialPose>& path, const LandmarkMap& map) {
   Eigen::AlignedBox2d box(Eigen::Vector2d(-1, -1), Eigen::Vector2d(1, 1));
-  for (const Eigen::Vector3d& pose : path) box.extend(pose.head<2>());
+  for (const SpatialPose& pose : path) box.extend(pose.position.head<2>());
   for (const LandmarkEstimate& landmark : map)
     if (landmark.type == "point" && landmark.mean.size() >= 2) box.extend(landmark.mean.head<2>());
   const double spacing = grid_spacing(box.sizes().maxCoeff());
@@ -49,7 +52,7 @@ CRenderizable::Ptr make_grid(std::span<const Eigen::Vector3d> path, const Landma
   return grid;
 }
 
-CRenderizable::Ptr make_path(std::span<const Eigen::Vector3d> path) {
+CRenderizable::Ptr make_path(const std::vector<SpatialPose>& path) {
   auto lines = mrpt::opengl::CSetOfLines::Create();
   lines->setName("path");
   lines->setColor_u8(0x00, 0x72, 0xb2);
@@ -57,10 +60,21 @@ CRenderizable::Ptr make_path(std::span<const Eigen::Vector3d> path) {
   const std::size_t stride =
       std::max<std::size_t>(1, (path.size() + kPathPoints - 1) / kPathPoints);
   for (std::size_t i = 0; i + 1 < path.size(); i += stride) {
-    const Eigen::Vector3d &from = path[i], &to = path[std::min(i + stride, path.size() - 1)];
-    lines->appendLine(from.x(), from.y(), 0.0, to.x(), to.y(), 0.0);
+    const Eigen::Vector3d& from = path[i].position;
+    const Eigen::Vector3d& to = path[std::min(i + stride, path.size() - 1)].position;
+    lines->appendLine(from.x(), from.y(), from.z(), to.x(), to.y(), to.z());
   }
   return lines;
+}
+
+CRenderizable::Ptr make_robot(const SpatialPose& pose) {
+  const auto& p = pose.position;
+  const auto& q = pose.rotation;
+  auto robot = mrpt::opengl::stock_objects::CornerXYSimple(1.0f, 2.0f);
+  robot->setPose(mrpt::poses::CPose3D(mrpt::math::CQuaternionDouble(q.w(), q.x(), q.y(), q.z()),
+                                      p.x(), p.y(), p.z()));
+  robot->setName("robot");
+  return robot;
 }
 
 /// An ellipsoid in the plane for 2-D landmarks, in space for 3-D ones.
@@ -90,17 +104,14 @@ CRenderizable::Ptr make_landmark(const LandmarkEstimate& landmark) {
 
 }  // namespace
 
-void write_scene_3d(const std::filesystem::path& file, std::span<const Eigen::Vector3d> path,
+void write_scene_3d(const std::filesystem::path& file, const Trajectory& path,
                     const LandmarkMap& map) {
+  const std::vector<SpatialPose> poses =
+      path.spatial.empty() ? lift_to_space(path.poses) : path.spatial;
   mrpt::opengl::COpenGLScene scene;
-  scene.insert(make_grid(path, map));
-  scene.insert(make_path(path));
-  if (!path.empty()) {
-    auto robot = mrpt::opengl::stock_objects::CornerXYSimple(1.0f, 2.0f);
-    robot->setPose(mrpt::math::TPose2D(path.back().x(), path.back().y(), path.back().z()));
-    robot->setName("robot");
-    scene.insert(robot);
-  }
+  scene.insert(make_grid(poses, map));
+  scene.insert(make_path(poses));
+  if (!poses.empty()) scene.insert(make_robot(poses.back()));
   for (const LandmarkEstimate& landmark : map)
     if (landmark.type == "point" && (landmark.mean.size() == 2 || landmark.mean.size() == 3))
       scene.insert(make_landmark(landmark));

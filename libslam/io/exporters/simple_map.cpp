@@ -1,14 +1,44 @@
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
 #include <mrpt/maps/CSimpleMap.h>
-#include <mrpt/math/wrap2pi.h>
+#include <mrpt/math/CQuaternion.h>
+#include <mrpt/poses/CPose3DPDFGaussian.h>
 #include <mrpt/poses/CPosePDFGaussian.h>
 
 #include <libslam/io/exporters/simple_map.hpp>
 #include <libslam/result/atomic_file.hpp>
+#include <libslam/result/spatial_alignment.hpp>
 
 namespace libslam {
+namespace {
+
+/// Derivative of (yaw, pitch, roll) by the rotation vector in the world. Near a pitch of +-90
+/// degrees, where yaw and roll cannot be told apart, the turn stays finite.
+Eigen::Matrix3d angles_by_rotation(double yaw, double pitch) {
+  const double cy = std::cos(yaw), sy = std::sin(yaw), sp = std::sin(pitch);
+  const double cp = std::copysign(std::max(std::abs(std::cos(pitch)), 1e-6), std::cos(pitch));
+  Eigen::Matrix3d J;
+  J << cy * sp / cp, sy * sp / cp, 1.0, -sy, cy, 0.0, cy / cp, sy / cp, 0.0;
+  return J;
+}
+
+mrpt::poses::CPose3DPDF::Ptr gaussian_of(const SpatialEstimate& estimate) {
+  const auto& p = estimate.pose.position;
+  const auto& q = estimate.pose.rotation;
+  const mrpt::poses::CPose3D mean(mrpt::math::CQuaternionDouble(q.w(), q.x(), q.y(), q.z()), p.x(),
+                                  p.y(), p.z());
+  Eigen::Matrix<double, 6, 6> J = Eigen::Matrix<double, 6, 6>::Identity();
+  J.bottomRightCorner<3, 3>() = angles_by_rotation(mean.yaw(), mean.pitch());
+  const Eigen::Matrix<double, 6, 6> cov = J * estimate.cov * J.transpose();
+  mrpt::math::CMatrixDouble66 matrix;
+  for (int i = 0; i < 6; ++i)
+    for (int j = 0; j < 6; ++j) matrix(i, j) = cov(i, j);
+  return mrpt::poses::CPose3DPDFGaussian::Create(mean, matrix);
+}
+
+}  // namespace
 
 SimpleMapWriter::SimpleMapWriter(Spacing spacing, std::size_t max_pairs)
     : spacing_(spacing), max_pairs_(max_pairs) {
@@ -17,17 +47,34 @@ SimpleMapWriter::SimpleMapWriter(Spacing spacing, std::size_t max_pairs)
     throw std::invalid_argument("the spacing of a simple map must not be negative");
 }
 
+bool SimpleMapWriter::is_far_enough(const SpatialPose& place) const {
+  if (pairs_.empty()) return true;
+  const SpatialPose& last = pairs_.back().place;
+  return (place.position - last.position).norm() >= spacing_.distance_m ||
+         place.rotation.angularDistance(last.rotation) >= spacing_.turn_rad;
+}
+
 void SimpleMapWriter::add(const Eigen::Vector3d& pose, const Eigen::Matrix3d& cov,
                           const mrpt::obs::CSensoryFrame::Ptr& frame) {
   if (!frame) return;
-  if (!pairs_.empty()) {
-    const Eigen::Vector3d moved = pose - pairs_.back().pose;
-    if (moved.head<2>().norm() < spacing_.distance_m &&
-        std::abs(mrpt::math::wrapToPi(moved.z())) < spacing_.turn_rad)
-      return;
-  }
+  const SpatialPose place = lift_to_space({&pose, 1}).front();
+  if (!is_far_enough(place)) return;
   if (pairs_.size() == max_pairs_) drop_every_second();
-  pairs_.push_back({pose, cov, frame});
+  mrpt::math::CMatrixDouble33 planar;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) planar(i, j) = cov(i, j);
+  const mrpt::poses::CPosePDFGaussian gaussian(mrpt::poses::CPose2D(pose.x(), pose.y(), pose.z()),
+                                               planar);
+  pairs_.push_back({place,
+                    mrpt::poses::CPose3DPDF::Ptr(mrpt::poses::CPose3DPDF::createFrom2D(gaussian)),
+                    frame});
+}
+
+void SimpleMapWriter::add(const SpatialEstimate& estimate,
+                          const mrpt::obs::CSensoryFrame::Ptr& frame) {
+  if (!frame || !is_far_enough(estimate.pose)) return;
+  if (pairs_.size() == max_pairs_) drop_every_second();
+  pairs_.push_back({estimate.pose, gaussian_of(estimate), frame});
 }
 
 void SimpleMapWriter::drop_every_second() {
@@ -40,13 +87,7 @@ void SimpleMapWriter::drop_every_second() {
 
 void SimpleMapWriter::write(const std::filesystem::path& file) const {
   mrpt::maps::CSimpleMap map;
-  for (const Pair& pair : pairs_) {
-    mrpt::math::CMatrixDouble33 cov;
-    for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j) cov(i, j) = pair.cov(i, j);
-    const mrpt::poses::CPose2D mean(pair.pose.x(), pair.pose.y(), pair.pose.z());
-    map.insert(mrpt::poses::CPosePDFGaussian::Create(mean, cov), pair.frame);
-  }
+  for (const Pair& pair : pairs_) map.insert(pair.pose, pair.frame);
   replace_file(file, [&](const std::filesystem::path& temporary) {
     return map.saveToFile(temporary.string());
   });

@@ -6,6 +6,9 @@
 
 #include <Eigen/Core>
 #include <mrpt/obs/CSensoryFrame.h>
+#include <mrpt/poses/CPose3DPDF.h>
+
+#include <libslam/data/spatial_pose.hpp>
 
 namespace libslam {
 
@@ -29,6 +32,8 @@ class SimpleMapWriter {
   /// frames are ignored.
   void add(const Eigen::Vector3d& pose, const Eigen::Matrix3d& cov,
            const mrpt::obs::CSensoryFrame::Ptr& frame);
+  /// The same in space. The covariance becomes one of (x, y, z, yaw, pitch, roll) to first order.
+  void add(const SpatialEstimate& estimate, const mrpt::obs::CSensoryFrame::Ptr& frame);
 
   std::size_t size() const { return pairs_.size(); }
 
@@ -38,10 +43,11 @@ class SimpleMapWriter {
 
  private:
   struct Pair {
-    Eigen::Vector3d pose;
-    Eigen::Matrix3d cov;
+    SpatialPose place;  ///< decides about the spacing
+    mrpt::poses::CPose3DPDF::Ptr pose;
     mrpt::obs::CSensoryFrame::Ptr frame;
   };
+  bool is_far_enough(const SpatialPose& place) const;
   void drop_every_second();
 
   Spacing spacing_;

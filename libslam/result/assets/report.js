@@ -25,21 +25,24 @@
     return { x: d3.extent(xs), y: d3.extent(ys) };
   }
 
-  function drawMap(map) {
+  /// `vertical`: the axis in the place of y; `lowest`: height of a flat view in pixels.
+  function drawMap(map, title, vertical, lowest) {
     var extent = mapExtent(map);
     if (extent.x[0] === undefined) return;
+    var clip = "map-clip-" + vertical;
     var hasTruth = map.truth.x.length > 0, hasTrueMap = map.true_landmarks.length > 0;
-    var plot = reportParts.section(main, "Path and map", hasTruth || hasTrueMap
+    var plot = reportParts.section(main, title, hasTruth || hasTrueMap
       ? "The estimated path should lie on the true one, and nearly every true landmark (cross) inside its 95 % ellipse."
       : "Ellipses hold the true place with 95 % probability; they should shrink when the robot comes back to known ground.");
     var entries = [{ text: "estimated path and landmarks, 95 % ellipses", colour: "estimate" }];
     if (hasTruth || hasTrueMap) entries.push({ text: "truth", colour: "truth" });
+    if (map.events) entries.push({ text: "event", colour: "warn" });
     legend(plot, entries);
 
     var margin = { left: 62, right: 14, top: 8, bottom: 40 };
     var width = WIDTH - margin.left - margin.right;
     var spanX = Math.max(extent.x[1] - extent.x[0], 0.1) * 1.08, spanY = Math.max(extent.y[1] - extent.y[0], 0.1) * 1.08;
-    var height = Math.max(360, Math.min(820, width * spanY / spanX));
+    var height = Math.max(lowest, Math.min(820, width * spanY / spanX));
     var metres = Math.max(spanX / width, spanY / height);
     var centre = [(extent.x[0] + extent.x[1]) / 2, (extent.y[0] + extent.y[1]) / 2];
     var x = d3.scale.linear().range([0, width])
@@ -49,14 +52,14 @@
 
     var svg = plot.append("svg").attr("viewBox", "0 0 " + WIDTH + " " + (height + margin.top + margin.bottom));
     var area = svg.append("g").attr("transform", "translate(" + margin.left + "," + margin.top + ")");
-    area.append("clipPath").attr("id", "map-clip").append("rect").attr({ width: width, height: height });
+    area.append("clipPath").attr("id", clip).append("rect").attr({ width: width, height: height });
     var xAxis = area.append("g").attr({ "class": "axis", transform: "translate(0," + height + ")" });
     var yAxis = area.append("g").attr("class", "axis");
     area.append("rect").attr({ "class": "frame", width: width, height: height });
     area.append("text").attr({ x: width / 2, y: height + 34, "text-anchor": "middle" }).text("x [m]");
     area.append("text").attr({ transform: "translate(-48," + height / 2 + ") rotate(-90)", "text-anchor": "middle" })
-      .text("y [m]");
-    var sheet = area.append("g").attr("clip-path", "url(#map-clip)");
+      .text(vertical + " [m]");
+    var sheet = area.append("g").attr("clip-path", "url(#" + clip + ")");
     sheet.append("rect").attr({ "class": "sheet", width: width, height: height });
     var layer = { path: sheet.append("g"), truth: sheet.append("g"), marks: sheet.append("g") };
 
@@ -72,7 +75,7 @@
       .append("ellipse").attr("class", "landmark-ellipse")
       .on("mousemove", function (l) {
         var e = ellipseOf(l[2], l[3], l[4]);
-        showReadout("landmark " + l[5] + ", seen " + l[6] + " times\nx " + number(l[0]) + " m, y " + number(l[1]) +
+        showReadout("landmark " + l[5] + ", seen " + l[6] + " times\nx " + number(l[0]) + " m, " + vertical + " " + number(l[1]) +
           " m\n95 % half axes " + number(e.major) + ", " + number(e.minor) + " m");
       }).on("mouseout", hideReadout);
     var dots = layer.marks.selectAll(".estimate-dot").data(map.landmarks).enter()
@@ -80,8 +83,11 @@
     var crosses = layer.marks.selectAll(".truth-cross").data(map.true_landmarks).enter()
       .append("path").attr({ "class": "truth-cross", d: "M-4,-4L4,4M-4,4L4,-4" })
       .on("mousemove", function (l) {
-        showReadout("true landmark " + l[2] + "\nx " + number(l[0]) + " m, y " + number(l[1]) + " m");
+        showReadout("true landmark " + l[2] + "\nx " + number(l[0]) + " m, " + vertical + " " + number(l[1]) + " m");
       }).on("mouseout", hideReadout);
+    var events = layer.marks.selectAll(".event-mark").data(map.events || []).enter()
+      .append("circle").attr({ "class": "event-mark", r: 7 })
+      .on("mousemove", function (e) { showReadout(e[2]); }).on("mouseout", hideReadout);
     var ends = layer.marks.selectAll(".end-mark")
       .data(pathPoints.length ? [pathPoints[0], pathPoints[pathPoints.length - 1]] : []).enter()
       .append("circle").attr({ r: 5, "class": function (p, i) { return i ? "end" : "start"; } });
@@ -106,6 +112,7 @@
       dots.attr("transform", place);
       crosses.attr("transform", place);
       ends.attr("transform", place);
+      events.attr("transform", place);
     }
     var zoom = d3.behavior.zoom().x(x).y(y).scaleExtent([0.5, 5000]).on("zoom", redraw);
     sheet.call(zoom);
@@ -156,6 +163,8 @@
     var curve = sheet.append("path").attr("class", panel.mean ? "estimate-area is-cloud" : "estimate-area");
     var mean = panel.mean ? sheet.append("path").attr("class", "mean-line") : null;
     var level = panel.level ? sheet.append("line").attr("class", "level-line") : null;
+    var happened = sheet.selectAll(".event-line").data(data.events || []).enter()
+      .append("line").attr({ "class": "event-line", y1: 0, y2: height });
     var cursor = sheet.append("line").attr({ "class": "cursor", y1: 0, y2: height }).style("display", "none");
 
     function redraw(extent) {
@@ -170,6 +179,7 @@
         height: y(panel.interval.low) - y(panel.interval.high) });
       curve.attr("d", areaOf(panel.low, panel.high)(indices));
       if (mean) mean.attr("d", meanLine(indices));
+      happened.attr({ x1: function (e) { return x(e.t); }, x2: function (e) { return x(e.t); } });
       if (level) level.attr({ x1: 0, x2: width, y1: y(panel.level.value), y2: y(panel.level.value) });
     }
     redrawers.push(redraw);
@@ -203,6 +213,7 @@
       entries.push({ text: (first.band || first.interval).name, colour: "band", shape: "key-band" });
     var withLevel = plotData.panels.filter(function (p) { return p.level; })[0];
     if (withLevel) entries.push({ text: withLevel.level.name, colour: "level", shape: "key-dashed" });
+    if (data.events) entries.push({ text: "event", colour: "warn", shape: "key-dashed" });
     legend(plot, entries);
     plot.append("button").text("Whole run").on("click", function () { zoomTime(timeExtent); });
     plotData.panels.forEach(function (panel, i) {
@@ -210,7 +221,8 @@
     });
   }
 
-  drawMap(data.map);
+  drawMap(data.map, "Path and map", "y", 360);
+  if (data.side) drawMap(data.side, "From the side", "z", 160);
   data.plots.forEach(drawPlot);
   if (timeExtent[0] !== undefined) {
     if (timeExtent[0] === timeExtent[1]) timeExtent = [timeExtent[0] - 0.5, timeExtent[1] + 0.5];

@@ -38,6 +38,25 @@ TEST_F(TruthReader, TumTakesThePlanarPartOfThePose) {
   EXPECT_EQ(path.poses[1], Eigen::Vector3d(3, 4, 0));
 }
 
+TEST_F(TruthReader, APathThatLeavesThePlaneKeepsItsFullPoses) {
+  const Trajectory tum = read_true_path(file("1 1 2 0 0 0 0 1\n2 3 4 -5 0.5 -0.5 0.5 0.5\n"));
+  ASSERT_EQ(tum.spatial.size(), 2U);
+  EXPECT_EQ(tum.spatial[1].position, Eigen::Vector3d(3, 4, -5));
+  EXPECT_EQ(tum.spatial[1].rotation.coeffs(), Eigen::Vector4d(0.5, -0.5, 0.5, 0.5));
+  for (std::size_t i = 0; i < 2; ++i)
+    EXPECT_LT((shadow_of(tum.spatial[i]) - tum.poses[i]).norm(), 1e-12);
+  const Trajectory rolled = read_true_path(file("1 2 0 0.3 0 0\n1 2 0 0.3 0.2 0.1\n"));
+  ASSERT_EQ(rolled.spatial.size(), 2U);
+  // Yaw, pitch, roll as in mrpt::poses::CPose3D: the x axis of the robot seen from the world.
+  EXPECT_LT((rolled.spatial[1].rotation * Eigen::Vector3d::UnitX() -
+             Eigen::Vector3d(std::cos(0.3) * std::cos(0.2), std::sin(0.3) * std::cos(0.2),
+                             -std::sin(0.2)))
+                .norm(),
+            1e-15);
+  EXPECT_TRUE(read_true_path(file("1 1 2 0 0 0 0.6 0.8\n")).spatial.empty());
+  EXPECT_TRUE(read_true_path(file("1 2 0 0.3 0 0\n")).spatial.empty());
+}
+
 TEST_F(TruthReader, PackagedTruthOfTheStockLogs) {
   const Trajectory flat = read_true_path(kPackaged + "kf-slam_demo_ground_truth_robot_path.txt");
   EXPECT_EQ(flat.poses.size(), 250U);

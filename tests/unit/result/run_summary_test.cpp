@@ -37,6 +37,45 @@ RunSummary full_summary() {
   return s;
 }
 
+RunSummary spatial_summary() {
+  RunSummary s = full_summary();
+  s.result.pose.reset();
+  s.result.pose3d = {{1, 2, 3}, {0.5, -0.5, 0.5, 0.5}};
+  s.result.placement = Placement::none;
+  s.result.noise = {{"range", 0.2, 0.1}};
+  s.health.events = {{12.5, 40, "disturbance"}, {13.0, 45, "relocalized"}};
+  s.truth->path->heading.reset();
+  s.truth->path->raw->rmse_z_m = 6;
+  s.truth->path->aligned->rmse_z_m = .6;
+  s.truth->path->rotation = {.03, .04};
+  s.truth->path->drift_percent = 1.25;
+  s.truth->nees->dof = 6;
+  return s;
+}
+
+TEST(RunSummary, KeysOfARunInSpaceReadBack) {
+  const std::string text = to_json_text(spatial_summary());
+  EXPECT_EQ(to_json_text(parse_run_summary(text, "run.json")), text);
+  const auto json = nlohmann::json::parse(text);
+  EXPECT_EQ(json["result"]["pose3d"],
+            nlohmann::json::array({1.0, 2.0, 3.0, -0.5, 0.5, 0.5, 0.5}));  // w last
+  EXPECT_EQ(json["result"]["placement"], "none");
+  EXPECT_EQ(json["result"]["noise"]["range"]["configured"], 0.1);
+  EXPECT_EQ(json["health"]["events"][1]["what"], "relocalized");
+  EXPECT_EQ(json["health"]["events"][1]["step"], 45);
+  EXPECT_EQ(json["truth"]["rmse_rotation_rad"], 0.03);
+  EXPECT_EQ(json["truth"]["max_rotation_rad"], 0.04);
+  EXPECT_EQ(json["truth"]["rmse_z_aligned_m"], 0.6);
+  EXPECT_EQ(json["truth"]["drift_percent"], 1.25);
+  EXPECT_EQ(json["truth"]["nees_dof"], 6);
+  EXPECT_FALSE(json["truth"].contains("rmse_heading_rad") || json["result"].contains("pose"));
+  const auto planar = nlohmann::json::parse(to_json_text(full_summary()));
+  for (const char* pointer :
+       {"/result/pose3d", "/result/placement", "/result/noise", "/health/events",
+        "/truth/rmse_rotation_rad", "/truth/rmse_z_m", "/truth/drift_percent", "/truth/nees_dof"})
+    EXPECT_FALSE(planar.contains(nlohmann::json::json_pointer(pointer))) << pointer;
+}
+
 TEST(RunSummary, ReadsBackToTheSameText) {
   const std::string text = to_json_text(full_summary());
   EXPECT_EQ(to_json_text(parse_run_summary(text, "run.json")), text);

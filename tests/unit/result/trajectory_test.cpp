@@ -19,7 +19,7 @@ std::filesystem::path write(const sample::TemporaryFolder& folder, const std::st
 
 std::string text_of(const std::vector<StepRecord>& steps) {
   std::string text;
-  append_trajectory_header(text, steps.front().calibration);
+  append_trajectory_header(text, columns_of(steps.front()));
   for (const StepRecord& step : steps) append_trajectory_row(text, step);
   return text;
 }
@@ -28,7 +28,7 @@ TEST(TrajectoryCsv, ReadsBackBitForBit) {
   const sample::TemporaryFolder folder("trajectory");
   const auto steps = sample::make_run(50, 7).steps;
   TrajectoryReader reader(write(folder, text_of(steps)));
-  EXPECT_EQ(reader.calibration_names(), (std::vector<std::string>{"scale_left", "scale_right"}));
+  EXPECT_EQ(reader.columns().calibration, (std::vector<std::string>{"scale_left", "scale_right"}));
   StepRecord back;
   for (const StepRecord& step : steps) {
     ASSERT_TRUE(reader.next(back));
@@ -44,6 +44,19 @@ TEST(TrajectoryCsv, ReadsBackBitForBit) {
     EXPECT_EQ(back.calibration[1].sigma, step.calibration[1].sigma);
   }
   EXPECT_FALSE(reader.next(back));
+}
+
+// Scripts read these columns.
+TEST(TrajectoryCsv, ColumnsOfAPlanarRunStayAsTheyAre) {
+  StepRecord step;
+  step.index = 3;
+  step.time = 1.5;
+  step.pose = {1, 2, 0.5};
+  step.calibration = {{"scale", 1.25, 0.5, 1, 1, true}};
+  EXPECT_EQ(text_of({step}),
+            "time,step,x,y,phi,cov_xx,cov_xy,cov_xphi,cov_yy,cov_yphi,cov_phiphi,"
+            "nis,nis_dof,accepted,gated,ambiguous,new_landmarks,scale,sigma_scale\n"
+            "1.500000000,3,1,2,0.5,0,0,0,0,0,0,0,0,0,0,0,0,1.25,0.5\n");
 }
 
 TEST(TrajectoryCsv, AHalfWrittenLastLineIsNotRead) {

@@ -46,7 +46,9 @@ class JointCompatibility final : public Associator {
   void associate(std::span<const Feature> features, const LandmarkRegistry& registry,
                  Compatibility& compatibility, std::vector<Verdict>& verdicts) override;
 
-  /// Of the last frame: whether the search was cut off.
+  // Of the last frame: the best hypothesis, with the pairs that were not used because another
+  // denies them, and whether the search was cut off.
+  std::vector<Pairing> hypothesis() const;
   bool exhausted() const { return spent_ > options_.budget; }
 
  private:

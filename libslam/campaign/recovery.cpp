@@ -12,7 +12,8 @@ void Recovery::observe(double elapsed, double error) {
   }
   if (before_.size() < kLevelUpdates) return;
   if (updates_ == 0)
-    level_ = 2.0 / kLevelUpdates * std::accumulate(before_.end() - kLevelUpdates, before_.end(), 0.0);
+    level_ =
+        2.0 / kLevelUpdates * std::accumulate(before_.end() - kLevelUpdates, before_.end(), 0.0);
   ++updates_;
   recovered_ = error < level_;
 }

@@ -42,8 +42,8 @@ struct RespondingFilter {
 };
 
 enum class Doubt {
-  kNone,        ///< use the observation as it is associated
-  kDisturbed,   ///< likewise, but it adds no landmark
+  kNone,         ///< use the observation as it is associated
+  kDisturbed,    ///< likewise, but it adds no landmark
   kUnexplained,  ///< do not use it
 };
 

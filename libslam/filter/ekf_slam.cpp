@@ -184,8 +184,12 @@ void EkfSlam::linearize_pairs(std::span<const Feature> features) {
 
 void EkfSlam::respond(std::span<const Feature> features, UpdateOutcome& outcome) {
   DisturbanceResponse& response = *parts_.disturbance;
-  const RespondingFilter self{
-      state_, pose_, ekf_, *parts_.measurement, parts_.registry, [&] { return associate(features); }};
+  const RespondingFilter self{state_,
+                              pose_,
+                              ekf_,
+                              *parts_.measurement,
+                              parts_.registry,
+                              [&] { return associate(features); }};
   const Doubt doubt = response.answer(self, {features, verdicts_, accepted(), measured_});
   if (doubt == Doubt::kNone) return;
   if (response.began()) outcome.event = "disturbance";

@@ -1,11 +1,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/Geometry>
 #include <mrpt/math/TPose2D.h>
 #include <mrpt/tfest/TMatchingPair.h>
 #include <mrpt/tfest/se2.h>
-
-#include <Eigen/Geometry>
 
 #include <libslam/association/pose_fit.hpp>
 #include <libslam/filter/relocalizer.hpp>
@@ -49,8 +48,7 @@ void Relocalizer::move(const Eigen::Vector3d& before, const Eigen::Vector3d& aft
 void Relocalizer::observe(const GaussianState& state, BlockId pose,
                           const MeasurementModel& measurement, std::span<const Feature> features) {
   const Eigen::Vector3d T_world_robot = state.estimate(pose);
-  const Eigen::Matrix2d R_robot_world =
-      Eigen::Rotation2Dd(-T_world_robot[2]).toRotationMatrix();
+  const Eigen::Matrix2d R_robot_world = Eigen::Rotation2Dd(-T_world_robot[2]).toRotationMatrix();
   std::vector<SightedPoint> points;
   SensorView view;
   Initialization where;
@@ -58,13 +56,14 @@ void Relocalizer::observe(const GaussianState& state, BlockId pose,
     measurement.initialize(state, pose, feature, where);
     const Eigen::Vector2d place =
         R_robot_world * (Eigen::Vector2d(where.estimate) - T_world_robot.head<2>());
-    points.push_back({feature.id,
-                      {place, R_robot_world * where.cov_noise * R_robot_world.transpose()}});
+    points.push_back(
+        {feature.id, {place, R_robot_world * where.cov_noise * R_robot_world.transpose()}});
     view.T_robot_sensor = feature.T_robot_sensor;
     const Eigen::Vector2d ray = place - feature.T_robot_sensor.head<2>();
     max_range_ = std::max(max_range_, ray.norm());
-    max_bearing_ = std::max(max_bearing_, std::abs(wrap_angle(std::atan2(ray.y(), ray.x()) -
-                                                              feature.T_robot_sensor[2])));
+    max_bearing_ =
+        std::max(max_bearing_,
+                 std::abs(wrap_angle(std::atan2(ray.y(), ray.x()) - feature.T_robot_sensor[2])));
   }
   view.max_range = max_range_;
   view.field_of_view = 2.0 * max_bearing_;
@@ -152,8 +151,7 @@ std::optional<FoundPose> Relocalizer::with_latest(const Eigen::Vector3d& pose,
   FoundPose found;
   found.T_world_robot = pose;
   const double sigma = kUninformedRanges * max_range_;
-  found.cov_uninformed =
-      Eigen::Vector3d(sigma, sigma, kUninformedHeading).cwiseAbs2().asDiagonal();
+  found.cov_uninformed = Eigen::Vector3d(sigma, sigma, kUninformedHeading).cwiseAbs2().asDiagonal();
   const std::vector<std::size_t>& latest = sightings_.latest();
   for (std::size_t feature = 0; feature < latest.size(); ++feature)
     for (const Pairing& pair : pairs)

@@ -26,7 +26,7 @@ namespace libslam {
 
 /// A pose, and what the last observation sees of the map from there.
 struct FoundPose {
-  Eigen::Vector3d T_world_robot = Eigen::Vector3d::Zero();  ///< x [m], y [m], phi [rad]
+  Eigen::Vector3d T_world_robot = Eigen::Vector3d::Zero();   ///< x [m], y [m], phi [rad]
   Eigen::Matrix3d cov_uninformed = Eigen::Matrix3d::Zero();  ///< to start the pose block with
   std::vector<Pairing> pairs;  ///< features of the observation, positions in the registry
 };

@@ -112,8 +112,8 @@ TEST(Calibration, IsFrozenWhileADisturbanceLasts) {
   options.sigma = Eigen::Vector3d(1.0, 1.0, 0.2);
   std::mt19937_64 random(87);
   SlamWorld world;
-  EkfSlam filter = make_filter(world, calibration,
-                               DisturbanceResponse(Disturbance(options), ResponseOptions{}));
+  EkfSlam filter =
+      make_filter(world, calibration, DisturbanceResponse(Disturbance(options), ResponseOptions{}));
   std::string event;
   const auto step = [&] {
     MotionAction action = world.drive(random, 1.0);

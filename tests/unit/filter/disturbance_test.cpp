@@ -43,8 +43,7 @@ EkfSlamParts parts_with(const Setup& setup) {
   if (setup.known)
     parts.associator = std::make_unique<KnownAssociation>(gate);
   else
-    parts.associator =
-        std::make_unique<NearestNeighbour>(gate, chi_square_quantile(0.99999, 2));
+    parts.associator = std::make_unique<NearestNeighbour>(gate, chi_square_quantile(0.99999, 2));
   parts.frame = make_error_frame(setup.frame);
   if (setup.inflation) {
     DisturbanceOptions options;
@@ -63,8 +62,7 @@ SlamWorld scattered_world(std::mt19937_64& random) {
   SlamWorld world(8, 4.0);
   world.T_robot_sensor.setZero();
   std::uniform_real_distribution<double> shift(-1.2, 1.2);
-  for (auto& landmark : world.landmarks)
-    landmark += Eigen::Vector2d(shift(random), shift(random));
+  for (auto& landmark : world.landmarks) landmark += Eigen::Vector2d(shift(random), shift(random));
   return world;
 }
 
@@ -72,7 +70,10 @@ SlamWorld scattered_world(std::mt19937_64& random) {
 class Drive {
  public:
   Drive(const Setup& setup, std::uint64_t seed)
-      : random(seed), world(scattered_world(random)), filter(parts_with(setup)), known(setup.known) {}
+      : random(seed),
+        world(scattered_world(random)),
+        filter(parts_with(setup)),
+        known(setup.known) {}
 
   UpdateOutcome step() {
     const MotionAction action = world.drive(random, 1.0);

@@ -140,8 +140,8 @@ TEST(Disturbance, FixedFormsDoNotLookForAScale) {
   DisturbanceOptions o = options();
   o.inflation = Inflation::kAdditive;
   EXPECT_EQ(Disturbance(o).scale(joint), 1.0);
-  EXPECT_TRUE(Disturbance(o).added(1.0).isApprox(
-      Eigen::MatrixXd(o.sigma.cwiseAbs2().asDiagonal())));
+  EXPECT_TRUE(
+      Disturbance(o).added(1.0).isApprox(Eigen::MatrixXd(o.sigma.cwiseAbs2().asDiagonal())));
   o.inflation = Inflation::kWholeState;
   o.max_factor = 50.0;
   const double excess = joint.nu.squaredNorm() - joint.trace_noise;

@@ -28,14 +28,14 @@ class CountingNoise final : public NoisePolicy {
   int& observed_;
 };
 
-struct Setup {
+struct FilterSetup {
   bool known = true;
   std::optional<Inflation> inflation = Inflation::kMaximumLikelihood;
   bool relocalize = true;
   const char* frame = "right_invariant";
 };
 
-EkfSlamParts parts_with(const Setup& setup) {
+EkfSlamParts parts_with(const FilterSetup& setup) {
   EkfSlamParts parts;
   parts.motion = std::make_unique<OdometryIncrement>(MotionParameters{}, CalibrationParameters{});
   parts.measurement = std::make_unique<RangeBearing>();
@@ -69,7 +69,7 @@ SlamWorld scattered_world(std::mt19937_64& random) {
 /// A drive on a circle; features without identity if asked for.
 class Drive {
  public:
-  Drive(const Setup& setup, std::uint64_t seed)
+  Drive(const FilterSetup& setup, std::uint64_t seed)
       : random(seed),
         world(scattered_world(random)),
         filter(parts_with(setup)),
@@ -181,7 +181,7 @@ TEST(DisturbanceResponse, TheWholeStateMovesTheMap) {
 }
 
 TEST(DisturbanceResponse, NothingLearnsAndNoLandmarkIsAddedWhileItLasts) {
-  Setup setup;
+  FilterSetup setup;
   int observed = 0;
   EkfSlamParts parts = parts_with(setup);
   parts.noise = std::make_unique<CountingNoise>(observed);

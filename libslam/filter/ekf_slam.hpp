@@ -72,6 +72,9 @@ class EkfSlam {
   /// the displacement since the reading before, gates and corrects.
   UpdateOutcome update(std::span<const Feature> features);
 
+  /// Nothing is known of the pose: it is searched in the map. Throws std::invalid_argument if the
+  /// filter does not respond to disturbances.
+  void lose_pose();
   /// Localization from now on: the landmarks keep their estimates and covariances, which count in
   /// every innovation, and none is added (MapStart::landmarks_given); or SLAM again.
   void give_landmarks(bool given);
@@ -108,6 +111,7 @@ class EkfSlam {
   AssociatedObservation associate(std::span<const Feature> features);
   void linearize_pairs(std::span<const Feature> features);
   void respond(std::span<const Feature> features, UpdateOutcome& outcome);
+  void start_again_at(const FoundPose& found, std::span<const Feature> features);
   void correct(std::span<const Feature> features, UpdateOutcome& outcome);
   void add_landmarks(std::span<const Feature> features, UpdateOutcome& outcome);
 

@@ -108,6 +108,25 @@ Innovation Ekf::innovate(const GaussianState& state, const LinearizedMeasurement
   return {squared_distance(m), log_det};
 }
 
+void Ekf::expect(const GaussianState& state, BlockId pose,
+                 std::span<const LinearizedMeasurement> measurements, JointInnovation& out) {
+  const Index m = stack(state, measurements);
+  out.nu = nu_.head(m);
+  out.cov.resize(m, m);
+  out.wrt_pose.setZero(m, state.size(pose));
+  out.trace_noise = 0.0;
+  state.covariance().project(rows_, out.cov);
+  Index row = 0;
+  for (const auto& measurement : measurements) {
+    const Index rows = measurement.innovation.size();
+    out.cov.block(row, row, rows, rows) += measurement.cov;
+    out.trace_noise += measurement.cov.trace();
+    for (const auto& [block, jacobian] : measurement.wrt)
+      if (block == pose) out.wrt_pose.middleRows(row, rows) = jacobian;
+    row += rows;
+  }
+}
+
 Correction Ekf::correct(GaussianState& state, BlockId pose,
                         std::span<const LinearizedMeasurement> measurements,
                         std::span<const BlockId> considered) {

@@ -15,6 +15,7 @@
 
 #include <Eigen/Core>
 
+#include <libslam/data/joint_innovation.hpp>
 #include <libslam/data/postfit.hpp>
 #include <libslam/state/error_frame.hpp>
 #include <libslam/state/gaussian_state.hpp>
@@ -49,6 +50,10 @@ class Ekf {
   /// Compatibility of one measurement with the state; the state is not changed. The distance is
   /// infinite where S is not positive definite.
   Innovation innovate(const GaussianState& state, const LinearizedMeasurement& measurement);
+
+  /// The same of all measurements together, for those who judge them before a correction.
+  void expect(const GaussianState& state, BlockId pose,
+              std::span<const LinearizedMeasurement> measurements, JointInnovation& out);
 
   /// Joint update with all measurements stacked. `pose` is the reference pose of the error frame.
   /// Blocks in `considered` keep estimate and covariance, but their uncertainty counts. Derivatives

@@ -39,6 +39,7 @@ UpdateOutcome& UpdateOutcome::operator+=(const UpdateOutcome& other) {
   gated += other.gated;
   ambiguous += other.ambiguous;
   new_landmarks += other.new_landmarks;
+  if (!other.event.empty()) event = other.event;
   verdicts.insert(verdicts.end(), other.verdicts.begin(), other.verdicts.end());
   return *this;
 }
@@ -94,6 +95,9 @@ void EkfSlam::propagate(const MotionAction* action) {
   const PhaseTimer timer(times_, Phase::kPredict);
   if (action == nullptr) {
     state_.covariance().add_noise(state_.offset(pose_), parts_.cov_no_odometry);
+    if (parts_.implied_input)
+      parts_.implied_input->move(BlockMatrix::Identity(state_.size(pose_), state_.size(pose_)),
+                                 parts_.cov_no_odometry);
     linearizer_.stood(state_, pose_);
     return;
   }
@@ -101,6 +105,8 @@ void EkfSlam::propagate(const MotionAction* action) {
   if (!calibration_.empty())
     calibration_.observe(state_, pose_, step_, action->dt, displacement_model());
   ekf_.propagate(state_, step_);
+  if (parts_.implied_input)
+    parts_.implied_input->move(step_.wrt.begin()->jacobian, step_.cov_noise);
   linearizer_.moved(state_, pose_);
   calibration_.diffuse(state_, action->dt);
 }
@@ -129,7 +135,7 @@ UpdateOutcome EkfSlam::update(std::span<const Feature> features) {
     features = adapted_;
   }
   associate(features, outcome);
-  correct(features, outcome);
+  if (!reject_motion(outcome)) correct(features, outcome);
   add_landmarks(features, outcome);
   return outcome;
 }
@@ -152,6 +158,23 @@ void EkfSlam::associate(std::span<const Feature> features, UpdateOutcome& outcom
                           accepted_.emplace_back());
     used_.push_back(i);
   }
+}
+
+bool EkfSlam::reject_motion(UpdateOutcome& outcome) {
+  if (!parts_.implied_input || accepted_.empty()) return false;
+  ekf_.expect(state_, pose_, accepted_, joint_);
+  const bool impossible = parts_.implied_input->impossible(joint_);
+  parts_.implied_input->restart();
+  if (!impossible) return false;
+  outcome.event = "impossible_motion";
+  outcome.gated += static_cast<int>(accepted_.size());
+  for (Verdict& verdict : verdicts_) {
+    if (verdict.outcome == Outcome::kPaired) verdict.outcome = Outcome::kGated;
+    if (!landmarks_given_ && verdict.outcome == Outcome::kGated) verdict.outcome = Outcome::kNew;
+  }
+  if (landmarks_given_) return true;
+  for (const BlockId block : parts_.registry.clear()) state_.remove(block);
+  return true;
 }
 
 void EkfSlam::correct(std::span<const Feature> features, UpdateOutcome& outcome) {

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include <Eigen/Core>
@@ -21,6 +22,7 @@
 #include <libslam/filter/map_start.hpp>
 #include <libslam/measurement/measurement_model.hpp>
 #include <libslam/motion/motion_model.hpp>
+#include <libslam/policy/implied_input.hpp>
 #include <libslam/policy/noise_policy.hpp>
 
 namespace libslam {
@@ -35,7 +37,8 @@ struct EkfSlamParts {
   /// Present: features are readings of a sensor's own path, and there is no map; `measurement` and
   /// `associator` may then be null.
   std::optional<DisplacementUpdate> displacement;
-  std::unique_ptr<NoisePolicy> noise;  ///< null: R as the features bring it
+  std::unique_ptr<NoisePolicy> noise;         ///< null: R as the features bring it
+  std::optional<ImpliedInput> implied_input;  ///< absent: any motion is possible
   LandmarkRegistry registry{1, 0};
   std::optional<MapStart> map;  ///< to start in; needs no point of linearization but the estimate
   BlockVector start;  ///< start pose, storage of the motion model's pose; empty: the origin
@@ -49,6 +52,7 @@ struct UpdateOutcome {
   int nis_dof = 0;
   int accepted = 0, gated = 0, ambiguous = 0, new_landmarks = 0;
   std::vector<Verdict> verdicts;  ///< one per feature
+  std::string event;              ///< what a run should tell: "impossible_motion"
 
   UpdateOutcome& operator+=(const UpdateOutcome& other);
 };
@@ -88,6 +92,9 @@ class EkfSlam {
   std::span<const BlockId> considered();
   // The steps of an update, each leaving behind what the next one needs.
   void associate(std::span<const Feature> features, UpdateOutcome& outcome);
+  /// Whether the observation implies an impossible motion. If so it is not used, and the landmarks
+  /// start anew where there are no given ones.
+  bool reject_motion(UpdateOutcome& outcome);
   void correct(std::span<const Feature> features, UpdateOutcome& outcome);
   void add_landmarks(std::span<const Feature> features, UpdateOutcome& outcome);
 
@@ -106,6 +113,7 @@ class EkfSlam {
   std::vector<LinearizedMeasurement> accepted_;
   std::vector<std::size_t> used_;  // the features behind `accepted_`
   std::vector<Postfit> postfits_;
+  JointInnovation joint_;
   Initialization initialization_;
   PhaseTimes times_;
 };

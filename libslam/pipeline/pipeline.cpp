@@ -89,6 +89,7 @@ StepRecord Pipeline::update(const LogStep& step) {
   record.gated = last_update_.gated;
   record.ambiguous = last_update_.ambiguous;
   record.new_landmarks = last_update_.new_landmarks;
+  record.event = last_update_.event;
   record.calibration = filter_.calibration();
   return record;
 }

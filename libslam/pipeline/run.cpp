@@ -74,7 +74,8 @@ class Run {
         player_(request.rawlog, player_options(request)),
         pipeline_(request.parameters),
         recorder_({request.directory, request.force, request.parameters.output.trajectory_period_s,
-                   request.parameters.output.report}) {
+                   request.parameters.output.report,
+                   request.parameters.policies.implied_input.enabled}) {
     replace_file(request.directory / "config.yaml", to_yaml(request.parameters));
   }
 

@@ -2,6 +2,7 @@
 // What adapts the filter while it runs.
 
 #include <libslam/config/description.hpp>
+#include <libslam/config/parameters/implied_input.hpp>
 
 namespace libslam {
 
@@ -9,6 +10,7 @@ namespace libslam {
 struct PolicyParameters {
   double update_period_s = 0.0;
   int update_every_n = 1;
+  ImpliedInputParameters implied_input;
 
   void describe(auto& v) {
     v.value("update_period_s", update_period_s,
@@ -17,6 +19,7 @@ struct PolicyParameters {
              "and more frequent updates make the filter overconfident.",
              0});
     v.value("update_every_n", update_every_n, {"1", "Use every n-th observation frame only.", 1});
+    v.section("implied_input", implied_input);
   }
 };
 

@@ -198,6 +198,9 @@ class Run {
                      input.repaired,     input.warnings};
     if (const std::string& map = request_.parameters.map.file; !map.empty()) {
       summary.input.map_file = map;
+      // Surveyed landmarks stand in the frame of the truth, and so does a run among them.
+      if (std::filesystem::path(map).extension() == ".csv")
+        summary.result.placement = Placement::none;
       summary.input.map_sha256 = sha256_of_file(map);
     }
     auto& warnings = summary.input.warnings;

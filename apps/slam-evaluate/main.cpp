@@ -55,8 +55,7 @@ TruthFiles truth_files_for(const RunSummary& summary, const Arguments& arguments
 
 LandmarkIdentity identity_of(const fs::path& directory) {
   const fs::path config = directory / "config.yaml";
-  const bool unknown =
-      fs::exists(config) && load_yaml(config).association.method == "nearest_neighbour";
+  const bool unknown = fs::exists(config) && !load_yaml(config).association.uses_identities();
   return unknown ? LandmarkIdentity::unknown : LandmarkIdentity::known;
 }
 
@@ -94,8 +93,9 @@ EvaluatedRun evaluate_run(const fs::path& directory, const Arguments& arguments,
   run.summary.truth = compare_with_truth(recorded, truth, identity_of(directory), arguments.window,
                                          placement_of(arguments));
   if (!truth.path.poses.empty() && !run.summary.truth->path)
-    warning = directory.string() + ": no pose of the run, or of the part of it that was asked for, "
-                                   "is near a true one in time";
+    warning = directory.string() +
+              ": no pose of the run, or of the part of it that was asked for, "
+              "is near a true one in time";
   return run;
 }
 

@@ -77,10 +77,9 @@ void describe_path(std::vector<Description>& list) {
   list.push_back({"ate_max_m", "  max [m]", of_position(raw, &P::max_m), true});
   list.push_back({"rmse_x_m", "  x RMSE [m]", of_position(raw, &P::rmse_x_m), true});
   list.push_back({"rmse_y_m", "  y RMSE [m]", of_position(raw, &P::rmse_y_m), true});
-  list.push_back({"rmse_z_m", "  z RMSE [m]", of_path([](const PathErrors& p) {
-                    return p.raw ? p.raw->rmse_z_m : std::nullopt;
-                  }),
-                  true});
+  list.push_back(
+      {"rmse_z_m", "  z RMSE [m]",
+       of_path([](const PathErrors& p) { return p.raw ? p.raw->rmse_z_m : std::nullopt; }), true});
   list.push_back({"ate_rmse_aligned_m", "path RMSE aligned [m]", of_position(aligned, &P::rmse_m)});
   list.push_back({"ate_mean_aligned_m", "  mean aligned [m]", of_position(aligned, &P::mean_m)});
   list.push_back({"ate_max_aligned_m", "  max aligned [m]", of_position(aligned, &P::max_m), true});
@@ -90,8 +89,7 @@ void describe_path(std::vector<Description>& list) {
       {"max_heading_deg", "  max [deg]", of_heading(&PathErrors::Heading::max_rad), true});
   list.push_back(
       {"rmse_rotation_deg", "rotation RMSE [deg]", of_rotation(&RotationErrors::rmse_rad)});
-  list.push_back(
-      {"max_rotation_deg", "  max [deg]", of_rotation(&RotationErrors::max_rad), true});
+  list.push_back({"max_rotation_deg", "  max [deg]", of_rotation(&RotationErrors::max_rad), true});
   list.push_back({"drift_percent", "drift at the end [%]",
                   of_path([](const PathErrors& p) { return p.drift_percent; })});
   list.push_back(

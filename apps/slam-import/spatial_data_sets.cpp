@@ -4,6 +4,7 @@
 #include <optional>
 
 #include <libslam/io/importers/kitti_features.hpp>
+#include <libslam/io/importers/kitti_images.hpp>
 #include <libslam/io/importers/starry_night.hpp>
 
 #include "command.hpp"
@@ -38,6 +39,15 @@ void add_starry_night(CLI::App& app, CommonArguments& arguments, Commands& comma
                       }});
 }
 
+bool convert_kitti_images(const CommonArguments& arguments, const Interrupted& interrupted) {
+  const KittiImagesSummary done =
+      import_kitti_images(arguments.directory, arguments.out, interrupted);
+  if (!arguments.quiet)
+    std::cout << arguments.out << ": " << done.pairs << " pairs of images, baseline "
+              << done.baseline << " m, " << done.true_poses << " true poses\n";
+  return done.complete;
+}
+
 }  // namespace
 
 void add_spatial_data_sets(CLI::App& app, CommonArguments& arguments, Commands& commands) {
@@ -47,4 +57,7 @@ void add_spatial_data_sets(CLI::App& app, CommonArguments& arguments, Commands& 
   commands.push_back({kitti, [](const CommonArguments& common, const Interrupted& interrupted) {
                         return write(common, import_kitti_features(common.directory), interrupted);
                       }});
+  auto* images = add_subcommand(app, arguments, "kitti-images",
+                                "Stereo images of the KITTI odometry benchmark");
+  commands.push_back({images, convert_kitti_images});
 }

@@ -155,8 +155,8 @@ void report(const RunSummary& summary, const fs::path& directory, Console& conso
                 " m aligned, " + std::to_string(summary.truth->map->missed) + " missed, " +
                 std::to_string(summary.truth->map->duplicates) + " duplicates");
   if (summary.truth && summary.truth->nees)
-    console.say("  mean NEES of the pose: " + number(summary.truth->nees->mean) +
-                " (ideal " + std::to_string(summary.truth->nees->dof) + ")");
+    console.say("  mean NEES of the pose: " + number(summary.truth->nees->mean) + " (ideal " +
+                std::to_string(summary.truth->nees->dof) + ")");
   for (const auto& warning : summary.input.warnings) console.warn("warning: " + warning);
   const fs::path page = directory / "report.html";
   console.say((fs::exists(page) ? "report: " + page.string() : "results: " + directory.string()));

@@ -35,6 +35,8 @@ class CalibrationStates {
                const DisplacementModel* sensor);
   /// Random walks over `dt` [s].
   void diffuse(GaussianState& state, double dt) const;
+  /// Every parameter.
+  std::span<const BlockId> all() const { return blocks_; }
   /// Parameters that are not excited now: they count with their uncertainty, but do not learn.
   std::span<const BlockId> considered() const { return considered_; }
 

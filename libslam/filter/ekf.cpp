@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -150,7 +151,7 @@ void Ekf::look_back(std::span<const LinearizedMeasurement> measurements,
                     std::vector<Postfit>& out) {
   Index m = 0;
   for (const auto& measurement : measurements) m += measurement.innovation.size();
-  if (divided_.rows() < m) divided_.resize(2 * m, kMaxMeasurementDimension);
+  reserve_divided(m);
   out.resize(measurements.size());
   Index row = 0;
   for (std::size_t i = 0; i < measurements.size(); ++i) {
@@ -171,6 +172,29 @@ void Ekf::look_back(std::span<const LinearizedMeasurement> measurements,
     postfit.cov_predicted.noalias() -= w.transpose() * w;
     row += rows;
   }
+}
+
+BlockEvidence Ekf::look_back(std::span<const LinearizedMeasurement> measurements, BlockId block,
+                             Index size) {
+  Index m = 0;
+  for (const auto& measurement : measurements) m += measurement.innovation.size();
+  reserve_divided(m);
+  auto w = divided_.topLeftCorner(m, size);
+  w.setZero();
+  Index row = 0;
+  for (const auto& measurement : measurements) {
+    const Index rows = measurement.innovation.size();
+    for (const auto& column : measurement.wrt)
+      if (column.block == block) w.middleRows(row, rows) = column.jacobian;
+    row += rows;
+  }
+  s_.topLeftCorner(m, m).triangularView<Eigen::Lower>().solveInPlace(w);
+  return {w.transpose() * white_.head(m), w.transpose() * w};
+}
+
+void Ekf::reserve_divided(Index m) {
+  constexpr Index kWidest = std::max<Index>(kMaxMeasurementDimension, kMaxTangent);
+  if (divided_.rows() < m) divided_.resize(2 * m, kWidest);
 }
 
 }  // namespace libslam

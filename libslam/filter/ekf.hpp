@@ -17,6 +17,7 @@
 
 #include <libslam/data/joint_innovation.hpp>
 #include <libslam/data/postfit.hpp>
+#include <libslam/state/block_evidence.hpp>
 #include <libslam/state/error_frame.hpp>
 #include <libslam/state/gaussian_state.hpp>
 #include <libslam/state/linearization.hpp>
@@ -65,6 +66,9 @@ class Ekf {
   /// After a correction that was applied, with the same measurements: what it left behind of each,
   /// without the position of its feature. Exact where no block was considered.
   void look_back(std::span<const LinearizedMeasurement> measurements, std::vector<Postfit>& out);
+  /// The same of one block: what the measurements said about it.
+  BlockEvidence look_back(std::span<const LinearizedMeasurement> measurements, BlockId block,
+                          Eigen::Index size);
 
  private:
   /// Stacks rows_ and nu_; returns the number of rows.
@@ -76,12 +80,14 @@ class Ekf {
   /// nu^T S^-1 nu from the factor in s_; leaves L^-1 nu in white_.
   double squared_distance(Eigen::Index m);
 
+  void reserve_divided(Eigen::Index m);
+
   std::unique_ptr<ErrorFrame> frame_;
   std::vector<PlacedJacobian> placed_;
   std::vector<JacobianRows> rows_;
   std::vector<Eigen::Index> considered_;
   Eigen::MatrixXd s_;
-  Eigen::MatrixXd divided_;  // L^-1 R of one measurement
+  Eigen::MatrixXd divided_;  // L^-1 times R of one measurement, or the columns of one block
   Eigen::VectorXd nu_, white_, delta_;
 };
 

@@ -15,6 +15,8 @@ EkfSlamParts checked(EkfSlamParts parts) {
   if (!parts.displacement && (!parts.measurement || !parts.associator))
     throw std::invalid_argument(
         "EkfSlam needs a measurement model and an associator, or a displacement model");
+  if (parts.displacement && parts.disturbance)
+    throw std::invalid_argument("EkfSlam notices disturbances by landmarks alone");
   if (parts.displacement && parts.linearization)
     throw std::invalid_argument("EkfSlam linearizes displacements at the estimate");
   if (parts.map && (parts.displacement || parts.linearization))
@@ -65,11 +67,16 @@ EkfSlam::EkfSlam(EkfSlamParts parts)
 void EkfSlam::start_in_map() {
   enter_map(*parts_.map,
             {state_, pose_, calibration_, parts_.registry, parts_.measurement->landmark_spec()});
-  landmarks_given_ = parts_.map->landmarks_given;
+  give_landmarks(parts_.map->landmarks_given);
   parts_.map.reset();
-  if (!landmarks_given_) return;
-  for (const RegisteredLandmark& landmark : parts_.registry.landmarks())
-    if (!state_.is_constant(landmark.block)) considered_.push_back(landmark.block);
+}
+
+void EkfSlam::give_landmarks(bool given) {
+  landmarks_given_ = given;
+  considered_.clear();
+  if (given)
+    for (const RegisteredLandmark& landmark : parts_.registry.landmarks())
+      if (!state_.is_constant(landmark.block)) considered_.push_back(landmark.block);
   given_ = considered_.size();
 }
 
@@ -80,7 +87,8 @@ SavedMap EkfSlam::saved_map() const {
 }
 
 std::span<const BlockId> EkfSlam::considered() {
-  const auto calibration = calibration_.considered();
+  const std::span<const BlockId> calibration =
+      disturbed() ? std::span<const BlockId>(calibration_.all()) : calibration_.considered();
   if (given_ == 0) return calibration;
   considered_.resize(given_);
   considered_.insert(considered_.end(), calibration.begin(), calibration.end());
@@ -102,6 +110,7 @@ void EkfSlam::propagate(const MotionAction* action) {
     return;
   }
   linearizer_.linearize(*parts_.motion, state_, pose_, calibration_.of_motion(), *action, step_);
+  if (parts_.process) scale_process_noise();
   if (!calibration_.empty())
     calibration_.observe(state_, pose_, step_, action->dt, displacement_model());
   ekf_.propagate(state_, step_);
@@ -109,6 +118,11 @@ void EkfSlam::propagate(const MotionAction* action) {
     parts_.implied_input->move(step_.wrt.begin()->jacobian, step_.cov_noise);
   linearizer_.moved(state_, pose_);
   calibration_.diffuse(state_, action->dt);
+}
+
+void EkfSlam::scale_process_noise() {
+  for (const BlockJacobian& column : step_.wrt)
+    if (column.block == pose_) parts_.process->scale(column.jacobian, step_.cov_noise);
 }
 
 UpdateOutcome EkfSlam::measure_displacement(const Feature& reading) {
@@ -134,75 +148,107 @@ UpdateOutcome EkfSlam::update(std::span<const Feature> features) {
     parts_.noise->apply(adapted_);
     features = adapted_;
   }
-  associate(features, outcome);
-  if (!reject_motion(outcome)) correct(features, outcome);
+  associate(features);
+  if (parts_.disturbance) respond(features, outcome);
+  if (parts_.implied_input) reject_impossible(features, outcome);
+  correct(features, outcome);
   add_landmarks(features, outcome);
   return outcome;
 }
 
-void EkfSlam::associate(std::span<const Feature> features, UpdateOutcome& outcome) {
+AssociatedObservation EkfSlam::associate(std::span<const Feature> features) {
   const PhaseTimer timer(times_, Phase::kAssociate);
-  PairTest test({state_, pose_, ekf_, linearizer_, *parts_.measurement, parts_.registry}, features);
+  PairTest test(
+      {state_, pose_, ekf_, linearizer_, *parts_.measurement, parts_.registry, selected_pairs_},
+      features);
   parts_.associator->associate(features, parts_.registry, test, verdicts_);
-  accepted_.clear();
-  accepted_.reserve(features.size());
-  used_.clear();
-  for (std::size_t i = 0; i < features.size(); ++i) {
-    Verdict& verdict = verdicts_[i];
-    if (landmarks_given_ && verdict.outcome == Outcome::kNew) verdict.outcome = Outcome::kAmbiguous;
-    if (verdict.outcome == Outcome::kGated) ++outcome.gated;
-    if (verdict.outcome == Outcome::kAmbiguous) ++outcome.ambiguous;
-    if (verdict.outcome != Outcome::kPaired) continue;
-    const BlockId landmark = parts_.registry.landmarks()[verdict.landmark].block;
-    linearizer_.linearize(*parts_.measurement, state_, pose_, landmark, features[i],
-                          accepted_.emplace_back());
-    used_.push_back(i);
-  }
+  if (landmarks_given_)
+    for (Verdict& verdict : verdicts_)
+      if (verdict.outcome == Outcome::kNew) verdict.outcome = Outcome::kAmbiguous;
+  linearize_pairs(features);
+  return {features, verdicts_, accepted(), measured_};
 }
 
-bool EkfSlam::reject_motion(UpdateOutcome& outcome) {
-  if (!parts_.implied_input || accepted_.empty()) return false;
-  ekf_.expect(state_, pose_, accepted_, joint_);
+void EkfSlam::linearize_pairs(std::span<const Feature> features) {
+  measured_.clear();
+  measured_.reserve(features.size());
+  used_.clear();
+  const auto linearize = [&](Outcome outcome) {
+    for (std::size_t i = 0; i < features.size(); ++i) {
+      if (verdicts_[i].outcome != outcome) continue;
+      const BlockId landmark = parts_.registry.landmarks()[verdicts_[i].landmark].block;
+      linearizer_.linearize(*parts_.measurement, state_, pose_, landmark, features[i],
+                            measured_.emplace_back());
+      if (outcome == Outcome::kPaired) used_.push_back(i);
+    }
+  };
+  linearize(Outcome::kPaired);
+  if (parts_.disturbance) linearize(Outcome::kGated);
+}
+
+void EkfSlam::respond(std::span<const Feature> features, UpdateOutcome& outcome) {
+  DisturbanceResponse& response = *parts_.disturbance;
+  const Doubt doubt = response.answer({state_, pose_, ekf_, *parts_.measurement, parts_.registry,
+                                       [&] { return associate(features); }},
+                                      {features, verdicts_, accepted(), measured_});
+  if (doubt == Doubt::kNone) return;
+  if (response.began()) outcome.event = "disturbance";
+  if (response.became_lost()) outcome.event = "lost";
+  for (Verdict& verdict : verdicts_)
+    if (verdict.outcome == Outcome::kNew || doubt == Doubt::kUnexplained)
+      verdict.outcome = Outcome::kAmbiguous;
+  if (doubt == Doubt::kUnexplained) linearize_pairs(features);
+}
+
+void EkfSlam::reject_impossible(std::span<const Feature> features, UpdateOutcome& outcome) {
+  if (used_.empty()) return;
+  ekf_.expect(state_, pose_, accepted(), joint_);
   const bool impossible = parts_.implied_input->impossible(joint_);
   parts_.implied_input->restart();
-  if (!impossible) return false;
+  if (!impossible) return;
   outcome.event = "impossible_motion";
-  outcome.gated += static_cast<int>(accepted_.size());
   for (Verdict& verdict : verdicts_) {
-    if (verdict.outcome == Outcome::kPaired) verdict.outcome = Outcome::kGated;
-    if (!landmarks_given_ && verdict.outcome == Outcome::kGated) verdict.outcome = Outcome::kNew;
+    const bool has_partner =
+        verdict.outcome == Outcome::kPaired || verdict.outcome == Outcome::kGated;
+    if (has_partner) verdict.outcome = landmarks_given_ ? Outcome::kGated : Outcome::kNew;
   }
-  if (landmarks_given_) return true;
-  for (const BlockId block : parts_.registry.clear()) state_.remove(block);
-  return true;
+  if (!landmarks_given_)
+    for (const BlockId block : parts_.registry.clear()) state_.remove(block);
+  linearize_pairs(features);
 }
 
 void EkfSlam::correct(std::span<const Feature> features, UpdateOutcome& outcome) {
   const PhaseTimer timer(times_, Phase::kUpdate);
   const Eigen::Vector2d before = state_.estimate(pose_).head<2>();
-  const Correction correction = ekf_.correct(state_, pose_, accepted_, considered());
+  const Correction correction = ekf_.correct(state_, pose_, accepted(), considered());
   if (correction.applied) {
     linearizer_.corrected(state_, pose_, before);
-    outcome.accepted = static_cast<int>(accepted_.size());
+    outcome.accepted = static_cast<int>(used_.size());
     outcome.nis = correction.nis;
     outcome.nis_dof = correction.dof;
-    if (parts_.noise) {
-      ekf_.look_back(accepted_, postfits_);
+    if (parts_.noise && !disturbed()) {
+      ekf_.look_back(accepted(), postfits_);
       for (std::size_t i = 0; i < used_.size(); ++i) postfits_[i].feature = used_[i];
       parts_.noise->observe(features, postfits_);
     }
+    if (parts_.process && !disturbed())
+      parts_.process->observe(ekf_.look_back(accepted(), pose_, state_.size(pose_)));
   } else {
     // An innovation covariance that is not positive definite: nothing was used.
     for (Verdict& verdict : verdicts_)
       if (verdict.outcome == Outcome::kPaired) verdict.outcome = Outcome::kGated;
-    outcome.gated += static_cast<int>(accepted_.size());
+  }
+  for (const Verdict& verdict : verdicts_) {
+    if (verdict.outcome == Outcome::kGated) ++outcome.gated;
+    if (verdict.outcome == Outcome::kAmbiguous) ++outcome.ambiguous;
   }
 }
 
 void EkfSlam::add_landmarks(std::span<const Feature> features, UpdateOutcome& outcome) {
   const PhaseTimer timer(times_, Phase::kAugment);
-  for (const Verdict& verdict : verdicts_)
-    if (verdict.outcome == Outcome::kPaired) parts_.registry.record_sighting(verdict.landmark);
+  for (std::size_t i = 0; i < features.size(); ++i)
+    if (verdicts_[i].outcome == Outcome::kPaired)
+      parts_.registry.record_sighting(verdicts_[i].landmark, features[i].appearance);
   for (std::size_t i = 0; i < features.size(); ++i) {
     if (verdicts_[i].outcome != Outcome::kNew) continue;
     if (!parts_.measurement->initializable(features[i])) {
@@ -214,11 +260,20 @@ void EkfSlam::add_landmarks(std::span<const Feature> features, UpdateOutcome& ou
     const BlockId block = state_.augment(parts_.measurement->landmark_spec(), initialization_);
     linearizer_.added(state_, pose_, block, features[i].id);
     verdicts_[i].landmark = parts_.registry.size();
-    parts_.registry.add(block, features[i].id);
+    parts_.registry.add(block, features[i].id, features[i].appearance);
     ++outcome.new_landmarks;
   }
   outcome.verdicts = verdicts_;
-  for (const BlockId given_up : parts_.registry.record_update()) state_.remove(given_up);
+  const std::vector<BlockId> given_up = parts_.registry.record_update();
+  for (const BlockId block : given_up) state_.remove(block);
+  if (landmarks_given_ && !given_up.empty()) give_landmarks(true);
+}
+
+std::vector<AdaptedNoise> EkfSlam::noise() const {
+  std::vector<AdaptedNoise> all;
+  if (parts_.noise) all = parts_.noise->noise();
+  if (parts_.process) all.push_back(parts_.process->noise());
+  return all;
 }
 
 std::vector<LandmarkEstimate> EkfSlam::landmarks(bool with_provisional) const {

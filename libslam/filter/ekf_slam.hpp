@@ -17,13 +17,16 @@
 #include <libslam/data/step_record.hpp>
 #include <libslam/filter/calibration_states.hpp>
 #include <libslam/filter/displacement_update.hpp>
+#include <libslam/filter/disturbance_response.hpp>
 #include <libslam/filter/ekf.hpp>
 #include <libslam/filter/linearizer.hpp>
 #include <libslam/filter/map_start.hpp>
+#include <libslam/filter/selected_pairs.hpp>
 #include <libslam/measurement/measurement_model.hpp>
 #include <libslam/motion/motion_model.hpp>
 #include <libslam/policy/implied_input.hpp>
 #include <libslam/policy/noise_policy.hpp>
+#include <libslam/policy/process_scale.hpp>
 
 namespace libslam {
 
@@ -37,8 +40,10 @@ struct EkfSlamParts {
   /// Present: features are readings of a sensor's own path, and there is no map; `measurement` and
   /// `associator` may then be null.
   std::optional<DisplacementUpdate> displacement;
-  std::unique_ptr<NoisePolicy> noise;         ///< null: R as the features bring it
-  std::optional<ImpliedInput> implied_input;  ///< absent: any motion is possible
+  std::unique_ptr<NoisePolicy> noise;              ///< null: R as the features bring it
+  std::unique_ptr<ProcessScale> process;           ///< null: Q as the motion model says
+  std::optional<DisturbanceResponse> disturbance;  ///< absent: every observation is believed
+  std::optional<ImpliedInput> implied_input;       ///< absent: any motion is possible
   LandmarkRegistry registry{1, 0};
   std::optional<MapStart> map;  ///< to start in; needs no point of linearization but the estimate
   BlockVector start;  ///< start pose, storage of the motion model's pose; empty: the origin
@@ -52,7 +57,8 @@ struct UpdateOutcome {
   int nis_dof = 0;
   int accepted = 0, gated = 0, ambiguous = 0, new_landmarks = 0;
   std::vector<Verdict> verdicts;  ///< one per feature
-  std::string event;              ///< what a run should tell: "impossible_motion"
+  /// What a run should tell: "disturbance", "lost", "relocalized", "impossible_motion".
+  std::string event;
 
   UpdateOutcome& operator+=(const UpdateOutcome& other);
 };
@@ -69,6 +75,10 @@ class EkfSlam {
   /// the displacement since the reading before, gates and corrects.
   UpdateOutcome update(std::span<const Feature> features);
 
+  /// Localization from now on: the landmarks keep their estimates and covariances, which count in
+  /// every innovation, and none is added (MapStart::landmarks_given); or SLAM again.
+  void give_landmarks(bool given);
+
   const GaussianState& state() const { return state_; }
   BlockId pose() const { return pose_; }
   const LandmarkRegistry& registry() const { return parts_.registry; }
@@ -76,6 +86,8 @@ class EkfSlam {
   PhaseTimes& times() { return times_; }
 
   std::vector<CalibrationValue> calibration() const { return calibration_.values(state_); }
+  /// What the policies believe of the noise; empty without one.
+  std::vector<AdaptedNoise> noise() const;
   /// Landmarks by identity; provisional ones only on demand.
   std::vector<LandmarkEstimate> landmarks(bool with_provisional = false) const;
   /// The map with everything a filter needs to go on from here. Throws std::invalid_argument if it
@@ -85,16 +97,23 @@ class EkfSlam {
   bool healthy() const;
 
  private:
+  bool disturbed() const { return parts_.disturbance && parts_.disturbance->disturbed(); }
+  std::span<const LinearizedMeasurement> accepted() const {
+    return std::span(measured_).first(used_.size());
+  }
   const DisplacementModel* displacement_model() const;
   void start_in_map();
+  void scale_process_noise();
   UpdateOutcome measure_displacement(const Feature& reading);
   /// Blocks that count with their uncertainty in a correction and do not learn.
   std::span<const BlockId> considered();
   // The steps of an update, each leaving behind what the next one needs.
-  void associate(std::span<const Feature> features, UpdateOutcome& outcome);
-  /// Whether the observation implies an impossible motion. If so it is not used, and the landmarks
-  /// start anew where there are no given ones.
-  bool reject_motion(UpdateOutcome& outcome);
+  AssociatedObservation associate(std::span<const Feature> features);
+  void linearize_pairs(std::span<const Feature> features);
+  void respond(std::span<const Feature> features, UpdateOutcome& outcome);
+  /// Gives up an observation that implies an impossible motion; the landmarks start anew, unless
+  /// they are given.
+  void reject_impossible(std::span<const Feature> features, UpdateOutcome& outcome);
   void correct(std::span<const Feature> features, UpdateOutcome& outcome);
   void add_landmarks(std::span<const Feature> features, UpdateOutcome& outcome);
 
@@ -110,8 +129,9 @@ class EkfSlam {
   MotionStep step_;
   std::vector<Feature> adapted_;  // the features with the noise of the policy
   std::vector<Verdict> verdicts_;
-  std::vector<LinearizedMeasurement> accepted_;
-  std::vector<std::size_t> used_;  // the features behind `accepted_`
+  SelectedPairs selected_pairs_;
+  std::vector<LinearizedMeasurement> measured_;  // accepted ones, then rejected ones
+  std::vector<std::size_t> used_;                // the features behind the accepted ones
   std::vector<Postfit> postfits_;
   JointInnovation joint_;
   Initialization initialization_;

@@ -15,6 +15,17 @@ std::optional<Match> PairTest::test(std::size_t feature, std::size_t landmark, d
   return Match{innovation.mahalanobis2, innovation.log_det};
 }
 
+void PairTest::select(std::span<const Pairing> pairs) {
+  parts_.selected.clear();
+  for (const auto& [feature, landmark] : pairs) {
+    parts_.linearizer.linearize(parts_.measurement, parts_.state, parts_.pose,
+                                parts_.registry.landmarks()[landmark].block, features_[feature],
+                                measurement_);
+    parts_.selected.add(measurement_);
+  }
+  parts_.selected.finish(parts_.state);
+}
+
 // In landmark space e = l_feature - l_map has covariance C <= 2 (C_feature + C_map), whatever
 // their correlation, and e^T C^-1 e >= |e|^2 / trace(C).
 bool PairTest::far_apart(std::size_t feature, BlockId landmark, double limit) {

@@ -9,6 +9,7 @@
 #include <libslam/association/landmark_registry.hpp>
 #include <libslam/filter/ekf.hpp>
 #include <libslam/filter/linearizer.hpp>
+#include <libslam/filter/selected_pairs.hpp>
 #include <libslam/measurement/measurement_model.hpp>
 #include <libslam/state/gaussian_state.hpp>
 
@@ -22,6 +23,7 @@ struct PairTestParts {
   Linearizer& linearizer;
   const MeasurementModel& measurement;
   const LandmarkRegistry& registry;
+  SelectedPairs& selected;  ///< memory of the joint test
 };
 
 /// Innovations of the pairs of one observation, with a cheap bound that skips pairs far apart.
@@ -31,6 +33,16 @@ class PairTest final : public Compatibility {
       : parts_(parts), features_(features) {}
 
   std::optional<Match> test(std::size_t feature, std::size_t landmark, double limit) override;
+  void select(std::span<const Pairing> pairs) override;
+  const MeasurementVector& innovation(std::size_t pair) const override {
+    return parts_.selected.innovation(pair);
+  }
+  const MeasurementMatrix& noise(std::size_t pair) const override {
+    return parts_.selected.noise(pair);
+  }
+  MeasurementMatrix covariance(std::size_t first, std::size_t second) const override {
+    return parts_.selected.covariance(first, second);
+  }
 
  private:
   bool far_apart(std::size_t feature, BlockId landmark, double limit);

@@ -1,6 +1,8 @@
+#include <algorithm>
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
+#include <vector>
 
 #include <libslam/io/input_error.hpp>
 #include <libslam/io/input_file.hpp>
@@ -20,7 +22,7 @@ constexpr std::uintmax_t kLargestFile =
     4 * kLargestMapFile * (kLargestMapFile + 1) + 1024 * kLargestMapFile;
 
 LandmarkMap landmarks_of(const SavedMap& map) {
-  LandmarkMap landmarks;
+  std::vector<LandmarkEstimate> landmarks;
   Index row = map.landmark_offset();
   for (const SavedLandmark& saved : map.landmarks) {
     Eigen::MatrixXd cov = Eigen::MatrixXd::Zero(map.dimension, map.dimension);
@@ -28,9 +30,12 @@ LandmarkMap landmarks_of(const SavedMap& map) {
       cov = map.cov.block(row, row, map.dimension, map.dimension);
       row += map.dimension;
     }
-    if (saved.confirmed) landmarks.add({saved.id, saved.type, saved.mean, cov, saved.times_seen});
+    if (saved.confirmed)
+      landmarks.push_back({saved.id, saved.type, saved.mean, cov, saved.times_seen});
   }
-  return landmarks;
+  std::sort(landmarks.begin(), landmarks.end(),
+            [](const LandmarkEstimate& a, const LandmarkEstimate& b) { return a.id < b.id; });
+  return LandmarkMap(landmarks);
 }
 
 std::string read_whole(const std::string& file) {

@@ -1,12 +1,17 @@
+#include <optional>
 #include <stdexcept>
 #include <string>
 
 #include <Eigen/Geometry>
 
+#include <libslam/association/appearance.hpp>
+#include <libslam/association/joint_compatibility.hpp>
 #include <libslam/association/known.hpp>
 #include <libslam/association/nearest_neighbour.hpp>
+#include <libslam/frontend/fiducials.hpp>
 #include <libslam/frontend/range_bearing_observation.hpp>
 #include <libslam/frontend/sensor_path_observation.hpp>
+#include <libslam/frontend/stereo_features.hpp>
 #include <libslam/frontend/stereo_observation.hpp>
 #include <libslam/io/map_file.hpp>
 #include <libslam/measurement/range_bearing.hpp>
@@ -18,6 +23,8 @@
 #include <libslam/motion/differential.hpp>
 #include <libslam/motion/odometry_increment.hpp>
 #include <libslam/pipeline/factory.hpp>
+#include <libslam/pipeline/policy_factory.hpp>
+#include <libslam/policy/sage_husa.hpp>
 #include <libslam/state/chi_square.hpp>
 
 namespace libslam {
@@ -45,10 +52,24 @@ std::unique_ptr<Associator> make_associator(const Parameters& p, const Measureme
     return std::make_unique<NearestNeighbour>(
         gate, chi_square_quantile(p.association.new_landmark_probability, dof));
   };
+  const auto joint = [&] {
+    JointCompatibilityOptions options;
+    options.gate_probability = p.association.gate_probability;
+    options.new_landmark_probability = p.association.new_landmark_probability;
+    options.dimension = dof;
+    return std::make_unique<JointCompatibility>(options);
+  };
+  const double all = chi_square_quantile(1.0, dof);
   if (p.association.method == "known") return std::make_unique<KnownAssociation>(gate);
   if (p.association.method == "nearest_neighbour") return nearest();
+  if (p.association.method == "joint_compatibility") return joint();
   if (p.association.method == "known_or_nearest")
-    return std::make_unique<KnownAssociation>(chi_square_quantile(1.0, dof), nearest());
+    return std::make_unique<KnownAssociation>(all, nearest());
+  if (p.association.method == "known_or_joint")
+    return std::make_unique<KnownAssociation>(all, joint());
+  if (p.association.method == "appearance")
+    return std::make_unique<AppearanceAssociation>(gate, p.association.appearance_distance,
+                                                   p.association.appearance_ratio);
   throw_unknown("association method", p.association.method);
 }
 
@@ -120,13 +141,16 @@ EkfSlamParts make_filter_parts(const Parameters& p, const TrueState* truth) {
   } else {
     parts.measurement = make_measurement(p);
     parts.associator = make_associator(p, *parts.measurement);
+    parts.process = make_process_policy(p, *parts.measurement);
   }
+  parts.disturbance = make_disturbance_response(p.policies.disturbance, parts.motion->pose_spec());
   parts.frame = make_error_frame(p.filter.error_frame);
   parts.linearization = make_linearization_point(p, truth);
-  parts.registry =
-      LandmarkRegistry(p.association.confirm_after, p.association.prune_after,
-                       p.association.method == "known_or_nearest" ? kBeyondIdentities : 0,
-                       p.association.forget_after);
+  parts.noise = make_noise_policy(p);
+  parts.registry = LandmarkRegistry(
+      p.association.confirm_after, p.association.prune_after,
+      p.association.uses_identities() && p.association.method != "known" ? kBeyondIdentities : 0,
+      p.association.forget_after);
   if (p.policies.implied_input.enabled)
     parts.implied_input.emplace(p.policies.implied_input.probability);
   const BlockSpec pose = parts.motion->pose_spec();
@@ -141,15 +165,18 @@ EkfSlamParts make_filter_parts(const Parameters& p, const TrueState* truth) {
 
 std::unique_ptr<Frontend> make_frontend(const Parameters& p) {
   if (p.frontend.source == "range_bearing")
-    return std::make_unique<RangeBearingObservation>(p.frontend, p.measurement,
-                                                     p.input.sensor_label,
-                                                     p.association.method != "nearest_neighbour");
+    return std::make_unique<RangeBearingObservation>(
+        p.frontend, p.measurement, p.input.sensor_label, p.association.uses_identities());
   if (p.frontend.source == "sensor_path")
     return std::make_unique<SensorPathObservation>(p.measurement, p.input.sensor_label);
   if (p.frontend.source == "stereo_points")
-    return std::make_unique<StereoObservation>(p.frontend, p.measurement.stereo,
-                                               p.input.sensor_label,
-                                               p.association.method != "nearest_neighbour");
+    return std::make_unique<StereoObservation>(
+        p.frontend, p.measurement.stereo, p.input.sensor_label, p.association.uses_identities());
+  if (p.frontend.source == "stereo_images")
+    return std::make_unique<StereoFeatures>(p.frontend, p.input.sensor_label,
+                                            p.association.uses_identities());
+  if (p.frontend.source == "fiducials")
+    return std::make_unique<Fiducials>(p.frontend, p.input.sensor_label);
   throw_unknown("front-end", p.frontend.source);
 }
 

@@ -1,4 +1,5 @@
 #include <optional>
+#include <utility>
 
 #include <libslam/pipeline/factory.hpp>
 #include <libslam/pipeline/pipeline.hpp>
@@ -10,6 +11,16 @@ namespace {
 InputParameters reader_input(InputParameters input) {
   if (input.odometry == "none") input.odometry = "increments";
   return input;
+}
+
+EkfSlamParts make_parts(const Parameters& parameters, const TrueState* truth, FilterStart start) {
+  EkfSlamParts parts = make_filter_parts(parameters, truth);
+  if (start.map) parts.map = std::move(start.map);
+  if (start.pose.size() > 0) {
+    parts.start = start.pose;
+    parts.cov_start = start.cov;
+  }
+  return parts;
 }
 
 void fill_pose(const GaussianState& state, BlockId pose, StepRecord& record) {
@@ -28,13 +39,13 @@ void fill_pose(const GaussianState& state, BlockId pose, StepRecord& record) {
 
 }  // namespace
 
-Pipeline::Pipeline(const Parameters& parameters, const TrueState* truth)
+Pipeline::Pipeline(const Parameters& parameters, const TrueState* truth, FilterStart start)
     : odometry_(reader_input(parameters.input)),
       ignore_odometry_(parameters.input.odometry == "none"),
       keeps_velocity_(parameters.motion.model == "constant_twist"),
       frontend_(make_frontend(parameters)),
       schedule_(parameters.policies.update_period_s, parameters.policies.update_every_n),
-      filter_(make_filter_parts(parameters, truth)) {}
+      filter_(make_parts(parameters, truth, std::move(start))) {}
 
 StepRecord Pipeline::process(const LogStep& step) {
   const bool moves = step.action || step.twist || keeps_velocity_;
@@ -79,10 +90,9 @@ StepRecord Pipeline::update(const LogStep& step) {
         last_update_ += outcome;
       }
   }
-  StepRecord record;
+  StepRecord record = estimate();
   record.index = step.index;
   record.time = step.time;
-  fill_pose(filter_.state(), filter_.pose(), record);
   record.nis = last_update_.nis;
   record.nis_dof = last_update_.nis_dof;
   record.accepted = last_update_.accepted;
@@ -90,7 +100,14 @@ StepRecord Pipeline::update(const LogStep& step) {
   record.ambiguous = last_update_.ambiguous;
   record.new_landmarks = last_update_.new_landmarks;
   record.event = last_update_.event;
+  return record;
+}
+
+StepRecord Pipeline::estimate() const {
+  StepRecord record;
+  fill_pose(filter_.state(), filter_.pose(), record);
   record.calibration = filter_.calibration();
+  record.noise = filter_.noise();
   return record;
 }
 

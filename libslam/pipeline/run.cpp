@@ -75,7 +75,8 @@ class Run {
         pipeline_(request.parameters),
         recorder_({request.directory, request.force, request.parameters.output.trajectory_period_s,
                    request.parameters.output.report,
-                   request.parameters.policies.implied_input.enabled}) {
+                   request.parameters.policies.implied_input.enabled ||
+                       request.parameters.policies.disturbance.response != "none"}) {
     replace_file(request.directory / "config.yaml", to_yaml(request.parameters));
   }
 
@@ -100,7 +101,9 @@ class Run {
   RunSummary finish() {
     save_map();
     const LandmarkMap map = finite_landmarks();
-    const bool known = request_.parameters.association.method != "nearest_neighbour";
+    // Points of images are numbered as they come.
+    const bool known = request_.parameters.association.uses_identities() &&
+                       request_.parameters.frontend.source != "stereo_images";
     RunSummary summary =
         recorder_.finish(summarize(), map, request_.truth,
                          known ? LandmarkIdentity::known : LandmarkIdentity::unknown);
@@ -193,9 +196,16 @@ class Run {
     summary.threads = request_.threads;
     summary.exit_code = exit_code_;
     summary.status = status_;
-    summary.input = {request_.rawlog,    input.entries,    input.actions,
-                     input.observations, input.duration_s, input.skipped + unusable,
-                     input.repaired,     input.warnings};
+    summary.input = {request_.rawlog,
+                     input.entries,
+                     input.actions,
+                     input.observations,
+                     input.duration_s,
+                     input.skipped + unusable,
+                     input.repaired,
+                     input.warnings,
+                     {},
+                     {}};
     if (const std::string& map = request_.parameters.map.file; !map.empty()) {
       summary.input.map_file = map;
       // Surveyed landmarks stand in the frame of the truth, and so does a run among them.
@@ -207,9 +217,11 @@ class Run {
     warnings.insert(warnings.end(), warnings_.begin(), warnings_.end());
     const auto about_odometry = pipeline_.odometry().warnings();
     warnings.insert(warnings.end(), about_odometry.begin(), about_odometry.end());
+    const auto about_features = pipeline_.frontend().warnings();
+    warnings.insert(warnings.end(), about_features.begin(), about_features.end());
     if (pipeline_.frontend().unusable() > 0)
       warnings.push_back(std::to_string(pipeline_.frontend().unusable()) +
-                         " measurements left out: not finite or range not positive");
+                         " measurements left out as unusable");
     warn_of_idle_schedule(warnings);
     warn_of_unused_sightings(warnings);
     fill_timing(summary);

@@ -42,7 +42,7 @@ struct PathErrors {
   using Heading = HeadingErrors;
   int poses = 0;  ///< matched poses
   std::optional<Position> raw, aligned;
-  std::optional<Heading> heading;  ///< of the raw placement, in the plane
+  std::optional<Heading> heading;            ///< of the raw placement, in the plane
   std::optional<RotationErrors> rotation{};  ///< of the raw placement, in space
   /// Raw position error of the last matched pose over the length of the true path, in space.
   std::optional<double> drift_percent{};
@@ -93,7 +93,8 @@ std::vector<double> pose_nees(
     std::span<const PoseMatch> matches,
     const std::optional<mrpt::math::TPose2D>& T_truth_filter = std::nullopt);
 
-/// Nothing where no value is finite. `values` belong to `matches` and have `dof` degrees of freedom.
+/// Nothing where no value is finite. `values` belong to `matches` and have `dof` degrees of
+/// freedom.
 std::optional<NeesSummary> summarize_nees(std::span<const EstimatedPose> estimate,
                                           std::span<const PoseMatch> matches,
                                           std::span<const double> values, int dof = 3);
@@ -106,8 +107,10 @@ std::optional<MapErrors> compare_map(const LandmarkMap& map, const std::vector<T
                                      const std::optional<mrpt::math::TPose2D>& placement, bool raw);
 
 /// The same with x, y and z; a landmark without z is at height 0.
-std::optional<MapErrors> compare_map_in_space(
-    const LandmarkMap& map, const std::vector<TrueLandmark>& truth, LandmarkIdentity identity,
-    const std::optional<Eigen::Isometry3d>& placement, bool raw);
+std::optional<MapErrors> compare_map_in_space(const LandmarkMap& map,
+                                              const std::vector<TrueLandmark>& truth,
+                                              LandmarkIdentity identity,
+                                              const std::optional<Eigen::Isometry3d>& placement,
+                                              bool raw);
 
 }  // namespace libslam

@@ -3,8 +3,7 @@
 namespace libslam {
 
 RecordedRun read_recorded_run(const std::filesystem::path& directory) {
-  return {read_run_summary(directory / "run.json"),
-          read_path(directory / "trajectory.csv"),
+  return {read_run_summary(directory / "run.json"), read_path(directory / "trajectory.csv"),
           read_landmark_map(directory / "map.csv")};
 }
 

@@ -54,7 +54,8 @@ std::string run_card(const RunSummary& s) {
 }
 
 std::string by_axis(const PositionErrors& errors) {
-  std::string text = format_figure(errors.rmse_x_m, "m") + " / " + format_figure(errors.rmse_y_m, "m");
+  std::string text =
+      format_figure(errors.rmse_x_m, "m") + " / " + format_figure(errors.rmse_y_m, "m");
   if (errors.rmse_z_m) text += " / " + format_figure(*errors.rmse_z_m, "m");
   return text;
 }

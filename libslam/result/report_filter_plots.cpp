@@ -60,8 +60,8 @@ class CalibrationPlot {
     if (names_.empty()) return;
     row_.clear();
     for (const CalibrationValue& value : step.calibration)
-      row_.insert(row_.end(), {value.mean, value.mean - 3.0 * value.sigma,
-                               value.mean + 3.0 * value.sigma});
+      row_.insert(row_.end(),
+                  {value.mean, value.mean - 3.0 * value.sigma, value.mean + 3.0 * value.sigma});
     series_.add(time, row_);
   }
 

@@ -8,8 +8,9 @@
 
 namespace libslam {
 
-/// Appends the plots of innovations, calibration and adapted noise, as far as the run has them, read
-/// from its trajectory.csv: only their envelopes are kept in memory. Throws like TrajectoryReader.
+/// Appends the plots of innovations, calibration and adapted noise, as far as the run has them,
+/// read from its trajectory.csv: only their envelopes are kept in memory. Throws like
+/// TrajectoryReader.
 void add_filter_plots(nlohmann::ordered_json& plots, const ReportInput& in, const RunAxis& axis);
 
 }  // namespace libslam

@@ -149,9 +149,8 @@ Json view_data(const ReportInput& in, const auto& view, bool with_truth) {
                            [&](std::size_t i) { return view.true_pose(i); });
   data["truth_is_sparse"] = !view.truth.has_heading;
   data["pose_ellipses"] = Json::array();
-  for_each_strided(poses, kPoseEllipses, [&](std::size_t i) {
-    data["pose_ellipses"].push_back(ellipse(view.pose(i)));
-  });
+  for_each_strided(poses, kPoseEllipses,
+                   [&](std::size_t i) { data["pose_ellipses"].push_back(ellipse(view.pose(i))); });
   data["landmarks"] = landmark_list(in.map, view);
   data["true_landmarks"] =
       with_truth ? true_landmark_list(in.truth.landmarks, view) : Json::array();

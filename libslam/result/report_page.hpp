@@ -17,12 +17,12 @@ std::filesystem::path plotting_library_folder();
 /// JavaScript that goes in as it is.
 struct PageContent {
   std::string title, source, program;
-  std::string cards;         ///< key figures
-  std::string above, below;  ///< before and after the plots
+  std::string cards;          ///< key figures
+  std::string above, below;   ///< before and after the plots
   bool has_pictures = false;  ///< the page holds images as data
-  std::string stills;        ///< in the place of the plots where the library is missing
-  std::string style;         ///< beyond the common one
-  std::string_view script;   ///< draws `data` into #plots with d3 and the parts of `reportParts`
+  std::string stills;         ///< in the place of the plots where the library is missing
+  std::string style;          ///< beyond the common one
+  std::string_view script;    ///< draws `data` into #plots with d3 and the parts of `reportParts`
   nlohmann::ordered_json data;
 };
 

@@ -92,8 +92,9 @@ std::string map_drawing(const Json& map, const std::string& vertical) {
   add_dots("true_landmarks", "truth-dot", 4.5);
   add_dots("landmarks", "estimate-dot", 2.5);
   svg += corner_label(10.0, height - 8.0,
-                      "x " + label(x.low) + " \u2026 " + label(x.high) + " m, " + vertical + " " + label(y.low) +
-                          " \u2026 " + label(y.high) + " m; estimate blue, truth orange");
+                      "x " + label(x.low) + " \u2026 " + label(x.high) + " m, " + vertical + " " +
+                          label(y.low) + " \u2026 " + label(y.high) +
+                          " m; estimate blue, truth orange");
   return svg + "</svg>";
 }
 
@@ -131,9 +132,8 @@ std::string still_panel_svg(const Json& axis, const Json& t, const Json& panel) 
 }
 
 std::string still_drawings_html(const Json& data) {
-  std::string html =
-      "<section class=\"plot\"><h2>Path and map</h2>" + map_drawing(data["map"], "y") +
-      "</section>\n";
+  std::string html = "<section class=\"plot\"><h2>Path and map</h2>" +
+                     map_drawing(data["map"], "y") + "</section>\n";
   if (data.contains("side"))
     html += "<section class=\"plot\"><h2>From the side</h2>" + map_drawing(data["side"], "z") +
             "</section>\n";

@@ -114,8 +114,8 @@ Json result_to_json(const RunSummary::Result& result) {
   Json object = Json::object();
   if (result.pose) object["pose"] = {result.pose->x(), result.pose->y(), result.pose->z()};
   if (result.pose3d) {
-    const auto &p = result.pose3d->position;
-    const auto &q = result.pose3d->rotation;
+    const auto& p = result.pose3d->position;
+    const auto& q = result.pose3d->rotation;
     object["pose3d"] = {p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w()};
   }
   if (result.placement == Placement::none) object["placement"] = "none";

@@ -97,8 +97,8 @@ std::optional<RelativeErrors> compare_relative(std::span<const SpatialEstimate> 
   if (!truth.has_heading || matches.size() < 2) return std::nullopt;
   const auto error = [&](std::size_t i, std::size_t j) -> RelativePoseError {
     const PoseMatch &from = matches[i], &to = matches[j];
-    const Isometry3d moved = estimate[from.estimate].pose.isometry().inverse() *
-                             estimate[to.estimate].pose.isometry();
+    const Isometry3d moved =
+        estimate[from.estimate].pose.isometry().inverse() * estimate[to.estimate].pose.isometry();
     const Isometry3d moved_truly =
         truth.spatial[from.truth].isometry().inverse() * truth.spatial[to.truth].isometry();
     const Isometry3d difference = moved_truly.inverse() * moved;

@@ -73,8 +73,8 @@ struct EstimatedPose {
   Eigen::Matrix3d cov = Eigen::Matrix3d::Zero();   ///< covariance of `pose`, additive
 };
 
-/// The path of a run. `spatial` is empty, or of a run in space and as long as `poses`, which are its
-/// shadow then.
+/// The path of a run. `spatial` is empty, or of a run in space and as long as `poses`, which are
+/// its shadow then.
 struct EstimatedPath {
   std::vector<EstimatedPose> poses;
   std::vector<SpatialEstimate> spatial;

@@ -73,11 +73,18 @@ PathErrors read_path(const Json& in) {
   PathErrors path;
   path.poses = count(in, "poses");
   if (const auto rmse = read(in, "ate_rmse_m"))
-    path.raw = {*rmse, number(in, "ate_mean_m"), number(in, "ate_max_m"), number(in, "rmse_x_m"),
-                number(in, "rmse_y_m"), read(in, "rmse_z_m")};
+    path.raw = {*rmse,
+                number(in, "ate_mean_m"),
+                number(in, "ate_max_m"),
+                number(in, "rmse_x_m"),
+                number(in, "rmse_y_m"),
+                read(in, "rmse_z_m")};
   if (const auto rmse = read(in, "ate_rmse_aligned_m"))
-    path.aligned = {*rmse, number(in, "ate_mean_aligned_m"), number(in, "ate_max_aligned_m"),
-                    number(in, "rmse_x_aligned_m"), number(in, "rmse_y_aligned_m"),
+    path.aligned = {*rmse,
+                    number(in, "ate_mean_aligned_m"),
+                    number(in, "ate_max_aligned_m"),
+                    number(in, "rmse_x_aligned_m"),
+                    number(in, "rmse_y_aligned_m"),
                     read(in, "rmse_z_aligned_m")};
   if (const auto rmse = read(in, "rmse_heading_rad"))
     path.heading = {*rmse, number(in, "max_heading_rad")};

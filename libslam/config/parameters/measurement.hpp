@@ -4,6 +4,7 @@
 #include <string>
 
 #include <libslam/config/description.hpp>
+#include <libslam/config/parameters/stereo.hpp>
 #include <libslam/config/parameters/stereo_noise.hpp>
 
 namespace libslam {
@@ -13,19 +14,23 @@ struct FrontendParameters {
   std::string source = "range_bearing";
   double min_range = 0.0;
   double max_range = 1e6;
+  StereoFrontendParameters stereo;
+  FiducialParameters fiducials;
 
   void describe(auto& v) {
     v.value("source", source,
             {"",
              "Where features come from: range-bearing observations, the path that a sensor reports "
-             "of itself (odometry observations labelled input.sensor_label), or logged points of a "
-             "stereo camera.",
+             "of itself (odometry observations labelled input.sensor_label), logged points of a "
+             "stereo camera, points of its images, or tags in its images.",
              0,
              0,
-             {"range_bearing", "sensor_path", "stereo_points"}});
+             {"range_bearing", "sensor_path", "stereo_points", "stereo_images", "fiducials"}});
     v.value("min_range", min_range,
             {"m", "Nearer observations are ignored; of stereo points by their depth.", 0});
     v.value("max_range", max_range, {"m", "Farther observations are ignored.", 0});
+    v.section("stereo", stereo);
+    v.section("fiducials", fiducials);
   }
 };
 

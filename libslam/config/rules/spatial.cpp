@@ -35,9 +35,11 @@ void check_spatial(const Parameters& p, Conflicts& conflicts) {
     check_space(p, conflicts);
   }
   const bool points = p.measurement.model == "stereo_point";
-  if (points != (p.frontend.source == "stereo_points")) {
+  const std::string& source = p.frontend.source;
+  if (points != (source == "stereo_points" || source == "stereo_images" || source == "fiducials")) {
     conflicts.push_back({{"measurement.model", "frontend.source"},
-                         "stereo_point measures stereo_points, and nothing else does"});
+                         "stereo_point measures stereo_points, stereo_images and fiducials, and "
+                         "nothing else does"});
   }
   const bool planar_map = !points || p.measurement.stereo.landmark_dimension == 2;
   const auto& implied = p.policies.implied_input;

@@ -65,8 +65,9 @@ void SimpleMapWriter::add(const Eigen::Vector3d& pose, const Eigen::Matrix3d& co
     for (int j = 0; j < 3; ++j) planar(i, j) = cov(i, j);
   const mrpt::poses::CPosePDFGaussian gaussian(mrpt::poses::CPose2D(pose.x(), pose.y(), pose.z()),
                                                planar);
-  pairs_.push_back(
-      {place, mrpt::poses::CPose3DPDF::Ptr(mrpt::poses::CPose3DPDF::createFrom2D(gaussian)), frame});
+  pairs_.push_back({place,
+                    mrpt::poses::CPose3DPDF::Ptr(mrpt::poses::CPose3DPDF::createFrom2D(gaussian)),
+                    frame});
 }
 
 void SimpleMapWriter::add(const SpatialEstimate& estimate,

@@ -70,9 +70,9 @@ TEST(RunSummary, KeysOfARunInSpaceReadBack) {
   EXPECT_EQ(json["truth"]["nees_dof"], 6);
   EXPECT_FALSE(json["truth"].contains("rmse_heading_rad") || json["result"].contains("pose"));
   const auto planar = nlohmann::json::parse(to_json_text(full_summary()));
-  for (const char* pointer : {"/result/pose3d", "/result/placement", "/result/noise",
-                              "/health/events", "/truth/rmse_rotation_rad", "/truth/rmse_z_m",
-                              "/truth/drift_percent", "/truth/nees_dof"})
+  for (const char* pointer :
+       {"/result/pose3d", "/result/placement", "/result/noise", "/health/events",
+        "/truth/rmse_rotation_rad", "/truth/rmse_z_m", "/truth/drift_percent", "/truth/nees_dof"})
     EXPECT_FALSE(planar.contains(nlohmann::json::json_pointer(pointer))) << pointer;
 }
 

@@ -87,8 +87,7 @@ TEST(ShadowCovariance, IsTheNumericDerivativeOfTheShadow) {
         Eigen::VectorXd x(7);
         x << estimate.pose.position, estimate.pose.rotation.coeffs();
         boxplus(spec, x, step * Eigen::Matrix<double, 6, 1>::Unit(k));
-        return shadow_of(
-            SpatialPose{x.head<3>(), Eigen::Quaterniond(x[6], x[3], x[4], x[5])});
+        return shadow_of(SpatialPose{x.head<3>(), Eigen::Quaterniond(x[6], x[3], x[4], x[5])});
       };
       J.col(k) = (shadow_at(1e-6) - shadow_at(-1e-6)) / 2e-6;
     }

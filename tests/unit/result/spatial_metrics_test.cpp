@@ -130,7 +130,8 @@ TEST(SpatialNees, SampledGaussianErrorsGiveSixWithinTheoryBounds) {
   ASSERT_TRUE(nees);
   EXPECT_EQ(nees->dof, 6);
   EXPECT_EQ(nees->steps, kSteps);
-  // Variance of a chi-square with 6 dof is 12, of an indicator .95 * .05; four standard errors each.
+  // Variance of a chi-square with 6 dof is 12, of an indicator .95 * .05; four standard errors
+  // each.
   EXPECT_NEAR(nees->mean, 6.0, 4 * std::sqrt(12.0 / kSteps));
   EXPECT_NEAR(nees->in_95, 0.95, 4 * std::sqrt(0.95 * 0.05 / kSteps));
   EXPECT_NEAR(nees->coverage_95, 0.95, 4 * std::sqrt(0.95 * 0.05 / kSteps));
@@ -217,7 +218,8 @@ TEST(SpatialMapErrors, HeightCounts) {
       compare_map_in_space(map, run.truth.landmarks, LandmarkIdentity::known, identity, true);
   EXPECT_NEAR(*errors->rmse_m, 0.5 / std::sqrt(n), 1e-12);
   EXPECT_LT(*errors->rmse_aligned_m, *errors->rmse_m);
-  errors = compare_map_in_space(map, run.truth.landmarks, LandmarkIdentity::unknown, identity, true);
+  errors =
+      compare_map_in_space(map, run.truth.landmarks, LandmarkIdentity::unknown, identity, true);
   EXPECT_NEAR(*errors->rmse_m, 0.5 / std::sqrt(n), 1e-12);
   EXPECT_NEAR(*compare_map(map, run.truth.landmarks, LandmarkIdentity::known,
                            mrpt::math::TPose2D(0, 0, 0), true)

@@ -55,8 +55,7 @@ TEST(SpatialRecord, ReadsBackBitForBit) {
     EXPECT_EQ(back.time, step.time);
     EXPECT_EQ(back.spatial->pose.position, step.spatial->pose.position);
     EXPECT_EQ(back.spatial->pose.rotation.coeffs(), step.spatial->pose.rotation.coeffs());
-    const Eigen::Matrix<double, 6, 6> symmetric =
-        step.spatial->cov.selfadjointView<Eigen::Upper>();
+    const Eigen::Matrix<double, 6, 6> symmetric = step.spatial->cov.selfadjointView<Eigen::Upper>();
     EXPECT_EQ(back.spatial->cov, symmetric);
     EXPECT_EQ(back.pose, step.pose);
     EXPECT_LT((back.cov - step.cov).norm(), 1e-15);
@@ -138,7 +137,8 @@ TEST(SpatialRecord, WithoutAdaptationAndEventsThereAreNoColumnsForThem) {
   Recorder recorder(options);
   const sample::Run run = sample::make_run(5, 2);
   for (const StepRecord& step : run.steps) recorder.record(step);
-  EXPECT_FALSE(recorder.finish({}, run.map, run.truth, LandmarkIdentity::known).health.disturbances);
+  EXPECT_FALSE(
+      recorder.finish({}, run.map, run.truth, LandmarkIdentity::known).health.disturbances);
 }
 
 TEST(SpatialRecord, RowsThatDoNotFitTheHeaderAreRefused) {

@@ -16,7 +16,7 @@
 namespace libslam {
 namespace {
 
-const std::string kPng("\x89PNG\r\n\x1a\n and \0 any bytes", 23);
+const std::string kPng("\x89PNG\r\n\x1a\n and \0 any bytes", 24);
 
 class SpatialReportTest : public testing::Test {
  protected:
@@ -29,7 +29,7 @@ class SpatialReportTest : public testing::Test {
     path_ = read_path(folder_.path() / "run" / "trajectory.csv");
   }
   ReportInput input() const {
-    return {summary_,  run_.map,    path_,     folder_.path() / "run" / "trajectory.csv",
+    return {summary_,   run_.map,    path_,    folder_.path() / "run" / "trajectory.csv",
             run_.truth, step_times_, pictures_};
   }
   nlohmann::ordered_json plot(const std::string& title) const {

@@ -35,10 +35,9 @@ inline Run make_spatial_run(int steps, unsigned seed, bool start_known = true) {
   Run run;
   for (int k = 0; k < steps; ++k) {
     const double s = 0.01 * k;
-    const SpatialPose truth{
-        {6 * std::sin(s), 4 * std::cos(s), 1.0 + 0.5 * std::sin(3 * s)},
-        Eigen::AngleAxisd(s, Eigen::Vector3d::UnitZ()) *
-            rotation({0.3 * std::sin(2 * s), 0.2 * std::cos(s), 0.1})};
+    const SpatialPose truth{{6 * std::sin(s), 4 * std::cos(s), 1.0 + 0.5 * std::sin(3 * s)},
+                            Eigen::AngleAxisd(s, Eigen::Vector3d::UnitZ()) *
+                                rotation({0.3 * std::sin(2 * s), 0.2 * std::cos(s), 0.1})};
     StepRecord step;
     step.index = k;
     step.time = 1'300'000'000.0 + 0.1 * k;

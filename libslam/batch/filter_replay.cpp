@@ -16,7 +16,11 @@ FilterReplay replay_filter(const std::string& rawlog, const Parameters& paramete
   if (!parameters.map.file.empty())
     throw std::invalid_argument("a batch starts without a map, the run started in " +
                                 parameters.map.file);
-  if (!make_filter_parts(parameters).measurement)
+  const EkfSlamParts parts = make_filter_parts(parameters);
+  if (parts.motion->pose_spec().chart != Chart::kSE2)
+    throw std::invalid_argument("a batch is planar; motion.model " + parameters.motion.model +
+                                " moves in space");
+  if (!parts.measurement)
     throw std::invalid_argument("a batch needs landmarks; measurement.model " +
                                 parameters.measurement.model + " has none");
   Pipeline pipeline(parameters);

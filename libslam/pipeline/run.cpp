@@ -74,7 +74,9 @@ class Run {
         player_(request.rawlog, player_options(request)),
         pipeline_(request.parameters),
         recorder_({request.directory, request.force, request.parameters.output.trajectory_period_s,
-                   request.parameters.output.report}) {
+                   request.parameters.output.report,
+                   request.parameters.policies.implied_input.enabled ||
+                       request.parameters.policies.disturbance.response != "none"}) {
     replace_file(request.directory / "config.yaml", to_yaml(request.parameters));
   }
 
@@ -206,6 +208,9 @@ class Run {
                      {}};
     if (const std::string& map = request_.parameters.map.file; !map.empty()) {
       summary.input.map_file = map;
+      // Surveyed landmarks stand in the frame of the truth, and so does a run among them.
+      if (std::filesystem::path(map).extension() == ".csv")
+        summary.result.placement = Placement::none;
       summary.input.map_sha256 = sha256_of_file(map);
     }
     auto& warnings = summary.input.warnings;

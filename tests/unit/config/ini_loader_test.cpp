@@ -101,9 +101,8 @@ TEST(KfSlamIni, NothingIsDroppedInSilence) {
       "[RangeBearingKFSLAM_KalmanFilter]\nmethod=kfIKFFull\n[Elsewhere]\nkey=1\n"));
   EXPECT_EQ(ini.rawlog_file, "no.rawlog");
   EXPECT_FALSE(ini.ground_truth_file);
-  for (const char* key :
-       {"ground_truth_file", "rawlog_offset", "[RangeBearingKFSLAM] 'my_own_key'",
-        "data_assoc_IC_metric", "method", "[Elsewhere] 'key'"}) {
+  for (const char* key : {"ground_truth_file", "rawlog_offset", "[RangeBearingKFSLAM] 'my_own_key'",
+                          "data_assoc_IC_metric", "method", "[Elsewhere] 'key'"}) {
     EXPECT_TRUE(has_note(ini, key)) << key;
   }
   EXPECT_EQ(ini.notes.size(), 6U);

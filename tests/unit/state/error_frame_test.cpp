@@ -171,7 +171,7 @@ TEST(ErrorFrame, RefusesWhatItIsNotDerivedFor) {
   const RightInvariantFrame frame;
   EXPECT_THROW(frame.require_supported({"line", Chart::kAngle, 1, WorldRole::kPoint}),
                std::invalid_argument);
-  EXPECT_THROW(frame.require_supported({"head", Chart::kSE3, 6, WorldRole::kPose}),
+  EXPECT_THROW(frame.require_supported({"plane", Chart::kVector, 4, WorldRole::kPoint}),
                std::invalid_argument);
   EXPECT_NO_THROW(frame.require_supported({"gain", Chart::kVector, 4, WorldRole::kNone}));
   std::mt19937_64 random(34);

@@ -55,8 +55,7 @@ TruthFiles truth_files_for(const RunSummary& summary, const Arguments& arguments
 
 LandmarkIdentity identity_of(const fs::path& directory) {
   const fs::path config = directory / "config.yaml";
-  const bool unknown =
-      fs::exists(config) && load_yaml(config).association.method == "nearest_neighbour";
+  const bool unknown = fs::exists(config) && !load_yaml(config).association.uses_identities();
   return unknown ? LandmarkIdentity::unknown : LandmarkIdentity::known;
 }
 

@@ -34,7 +34,7 @@ enum ExitCode { kDone = 0, kCommandLine = 2, kConfiguration = 3, kInput = 4 };
 std::atomic<bool> g_stop{false};
 
 struct Arguments {
-  std::string config, rawlog, out, truth, truth_map, input_policy;
+  std::string config, rawlog, out, truth, truth_map, input_policy, load_map, save_map;
   std::vector<std::string> settings;
   std::string help_config;
   std::uint64_t seed = 0;
@@ -116,6 +116,8 @@ Job load(Arguments& arguments) {
     set_parameter(job.parameters, setting, &job.places);
   if (!arguments.input_policy.empty())
     set_parameter(job.parameters, "input.policy=" + arguments.input_policy, &job.places);
+  if (!arguments.load_map.empty())
+    set_parameter(job.parameters, "map.file=" + arguments.load_map, &job.places);
   validate(job.parameters, job.places);
   const TruthFiles beside = arguments.rawlog.empty() ? TruthFiles{} : find_truth(arguments.rawlog);
   job.truth.notes = beside.notes;
@@ -227,6 +229,7 @@ int run(Arguments arguments) {
   request.truth = read_known_truth(job.truth, arguments, console);
   request.directory =
       arguments.out.empty() ? fresh_directory(arguments.rawlog) : fs::path(arguments.out);
+  request.save_map = arguments.save_map;
   request.force = arguments.force;
   request.seed = arguments.seed;
   request.threads = arguments.threads;
@@ -254,6 +257,14 @@ void add_options(CLI::App& app, Arguments& arguments) {
   app.add_option("--truth", arguments.truth,
                  "True path (TUM, or MRPT's text form); default: beside the rawlog");
   app.add_option("--truth-map", arguments.truth_map, "True landmarks (id,x,y or MRPT's text form)");
+  app.add_option("--save-map", arguments.save_map,
+                 "Write the map at the end: FILE for --load-map, and a readable .csv beside it")
+      ->check([](const std::string& file) {
+        return fs::path(file).extension() == ".csv" ? "the .csv is written beside FILE" : "";
+      });
+  app.add_option("--load-map", arguments.load_map,
+                 "Start in a map of --save-map, or in surveyed landmarks (id,x,y[,z]); "
+                 "map.mode: localize (default) or continue; map.start: where");
   app.add_option("--input-policy", arguments.input_policy, "strict, skip or repair");
   app.add_option("--speed", arguments.speed,
                  "Play at this multiple of real time; default: as fast as possible")
@@ -272,7 +283,15 @@ void add_options(CLI::App& app, Arguments& arguments) {
   app.add_flag("-v,--verbose", arguments.verbose, "Print more");
   app.set_version_flag(
       "--version", "slam-run " + std::string(version()) + " (" + std::string(git_revision()) + ")");
-  app.footer("Example: slam-run config/range_bearing.yaml kf-slam_demo.rawlog --out run1");
+  app.footer(
+      "Examples:\n"
+      "  slam-run config/range_bearing.yaml kf-slam_demo.rawlog --out run1\n"
+      "  slam-run config/range_bearing.yaml monday.rawlog --save-map hall.slammap\n"
+      "  slam-run config/range_bearing.yaml tuesday.rawlog --load-map hall.slammap\n"
+      "    localizes where monday ended; to go on mapping:     --set map.mode=continue\n"
+      "    to start elsewhere in the map:  --set map.start=given_pose --set map.initial_x=2.5\n"
+      "  slam-run config/range_bearing.yaml sim.rawlog --load-map sim.landmarks.csv "
+      "--set map.start=given_pose");
 }
 
 }  // namespace

@@ -20,6 +20,18 @@ class Remaining final : public Compatibility {
     if (taken) return std::nullopt;
     return all_.test(features_[feature], landmark, limit);
   }
+  void select(std::span<const Pairing> pairs) override {
+    std::vector<Pairing> of_all(pairs.begin(), pairs.end());
+    for (Pairing& pair : of_all) pair.feature = features_[pair.feature];
+    all_.select(of_all);
+  }
+  const MeasurementVector& innovation(std::size_t pair) const override {
+    return all_.innovation(pair);
+  }
+  const MeasurementMatrix& noise(std::size_t pair) const override { return all_.noise(pair); }
+  MeasurementMatrix covariance(std::size_t first, std::size_t second) const override {
+    return all_.covariance(first, second);
+  }
 
  private:
   Compatibility& all_;

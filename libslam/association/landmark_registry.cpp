@@ -1,3 +1,8 @@
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
 #include <libslam/association/landmark_registry.hpp>
 
 namespace libslam {
@@ -11,14 +16,27 @@ std::optional<std::size_t> LandmarkRegistry::find(std::int64_t id) const {
   return found->second;
 }
 
-void LandmarkRegistry::add(BlockId block, std::int64_t id) {
+void LandmarkRegistry::add(BlockId block, std::int64_t id,
+                           std::shared_ptr<const Descriptor> appearance) {
   if (id == kNoIdentity) id = next_number_++;
   by_id_[id] = landmarks_.size();
-  landmarks_.push_back({block, id, 1, 0, confirm_after_ <= 1});
+  landmarks_.push_back({block, id, 1, 0, confirm_after_ <= 1, std::move(appearance)});
 }
 
-void LandmarkRegistry::record_sighting(std::size_t landmark) {
+void LandmarkRegistry::restore(const RegisteredLandmark& landmark) {
+  if (landmark.id == kNoIdentity || !by_id_.emplace(landmark.id, landmarks_.size()).second)
+    throw std::invalid_argument("landmark " + std::to_string(landmark.id) + " cannot be restored");
+  landmarks_.push_back(landmark);
+}
+
+void LandmarkRegistry::number_from(std::int64_t number) {
+  next_number_ = std::max(next_number_, number);
+}
+
+void LandmarkRegistry::record_sighting(std::size_t landmark,
+                                       std::shared_ptr<const Descriptor> appearance) {
   auto& seen = landmarks_[landmark];
+  if (appearance) seen.appearance = std::move(appearance);
   if (++seen.times_seen >= confirm_after_) seen.confirmed = true;
 }
 

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -18,6 +19,7 @@ struct RegisteredLandmark {
   int times_seen = 1;
   int updates = 0;  ///< updates of the filter since the landmark was added
   bool confirmed = false;
+  std::shared_ptr<const Descriptor> appearance = nullptr;  ///< as it was seen last; null: not known
 };
 
 /// A landmark starts provisional, is confirmed after `confirm_after` sightings and is given up when
@@ -33,8 +35,17 @@ class LandmarkRegistry {
   std::optional<std::size_t> find(std::int64_t id) const;
 
   /// Adds a landmark seen for the first time; without an identity it gets the next running number.
-  void add(BlockId block, std::int64_t id);
-  void record_sighting(std::size_t landmark);
+  void add(BlockId block, std::int64_t id, std::shared_ptr<const Descriptor> appearance = nullptr);
+  /// Adds a landmark of an earlier run as it was. Throws std::invalid_argument if its identity is
+  /// taken or none.
+  void restore(const RegisteredLandmark& landmark);
+  /// The next running number.
+  std::int64_t next_number() const { return next_number_; }
+  /// Running numbers go on from `number` or beyond.
+  void number_from(std::int64_t number);
+  /// A sighting without an appearance leaves the last one.
+  void record_sighting(std::size_t landmark,
+                       std::shared_ptr<const Descriptor> appearance = nullptr);
   /// Counts one update of the filter; removes and returns the landmarks to give up.
   std::vector<BlockId> record_update();
 

@@ -220,7 +220,7 @@ Json cell_to_json(const CampaignPlan& plan, std::size_t point, std::size_t varia
     std::vector<const Json*> figures;
     for (const VariantOutcome* run : done) figures.push_back(&run->figures);
     const Json summary = summarize_numbers(figures);
-    for (const char* key : {"truth", "health", "calibration"})
+    for (const char* key : {"truth", "health", "calibration", "noise"})
       if (summary.contains(key)) out[key] = summary[key];
     out["pooled"] = pooled_errors(done);
     out["nees"] = nees_of(cell, plan, at.scenario.drive.observation_period_s);

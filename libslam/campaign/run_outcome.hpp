@@ -23,7 +23,8 @@ struct ErrorSeries {
 
 struct VariantOutcome {
   std::string status;  ///< "done", "diverged", or "failed: why"
-  /// `truth`, `health`, `timing` as in run.json, and `calibration` as its result.calibration.
+  /// `truth`, `health`, `timing` as in run.json, `calibration` as its result.calibration, and
+  /// `noise`: name -> adapted and configured sigma at the end.
   nlohmann::ordered_json figures;
   ErrorSums sums;
   /// Of the pose at every observation of the log, the same times in all runs of a point; NaN where

@@ -50,6 +50,10 @@ class Contestant {
     return mrpt_ ? std::vector<CalibrationValue>{} : pipeline_->filter().calibration();
   }
 
+  std::vector<AdaptedNoise> noise() const {
+    return mrpt_ ? std::vector<AdaptedNoise>{} : pipeline_->filter().noise();
+  }
+
  private:
   std::unique_ptr<MrptFilter> mrpt_;
   std::unique_ptr<Pipeline> pipeline_;
@@ -67,9 +71,8 @@ StepRecord start_of(const LogStep& step) {
 class Lane {
  public:
   Lane(const Variant& variant, const TrueState& truth, double diverged_beyond)
-      : identity_(variant.parameters.association.method == "nearest_neighbour"
-                      ? LandmarkIdentity::unknown
-                      : LandmarkIdentity::known),
+      : identity_(variant.parameters.association.uses_identities() ? LandmarkIdentity::known
+                                                                   : LandmarkIdentity::unknown),
         diverged_beyond_(diverged_beyond) {
     attempt([&] { contestant_.emplace(variant, truth); });
   }
@@ -138,6 +141,9 @@ class Lane {
     for (const CalibrationValue& value : calibration)
       outcome.figures["calibration"][value.name] = {
           {"mean", value.mean}, {"sigma", value.sigma}, {"observable", value.observable ? 1 : 0}};
+    for (const AdaptedNoise& noise : contestant_->noise())
+      outcome.figures["noise"][noise.name] = {{"sigma", noise.sigma},
+                                              {"configured", noise.configured}};
     const std::vector<PoseMatch> matches = match_poses(path_, truth.path);
     add_nees(truth, matches, outcome);
     add_errors(truth, matches, outcome, with_series);

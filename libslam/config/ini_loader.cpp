@@ -10,6 +10,7 @@
 
 #include <libslam/config/edit_distance.hpp>
 #include <libslam/config/ini_loader.hpp>
+#include <libslam/config/ini_parameters.hpp>
 #include <libslam/config/kf_slam_remarks.hpp>
 #include <libslam/config/parameter_table.hpp>
 #include <libslam/config/text_file.hpp>
@@ -257,6 +258,18 @@ void read_association(const IniFile& ini, KfSlamIni& result) {
   }
 }
 
+/// What the sections of libslam add.
+void read_additions(const IniFile& ini, const std::filesystem::path& path, Parameters& parameters) {
+  try {
+    load_parameters(ini.content(), parameters, kf_slam_option);
+  } catch (const ConfigError& error) {
+    throw ConfigError(path.string() + ": " + error.what());
+  }
+  AssociationParameters& association = parameters.association;
+  association.new_landmark_probability =
+      std::max(association.new_landmark_probability, association.gate_probability);
+}
+
 }  // namespace
 
 KfSlamIni load_kf_slam_ini(const std::filesystem::path& path) {
@@ -267,6 +280,7 @@ KfSlamIni load_kf_slam_ini(const std::filesystem::path& path) {
   read_odometry(ini, result);
   read_sensor(ini, result.parameters);
   read_association(ini, result);
+  read_additions(ini, path, result.parameters);
   append_remarks(ini.content(), result.notes);
   return result;
 }

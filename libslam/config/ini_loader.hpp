@@ -18,7 +18,7 @@ namespace libslam {
 /// sensor sigma for all observations, standard error frame, exact start, identities of the log
 /// without a gate, and nearest neighbour (by d^2 + log|S|) with one gate and no dead zone for
 /// observations without identity. One difference remains: MRPT ignores motion before the first
-/// landmark, here it counts.
+/// landmark, here it counts. Sections of libslam (ini_parameters.hpp) are read on top.
 struct KfSlamIni {
   Parameters parameters;
   /// Existing files as found from the folder of the ini file, else from the working directory; a

@@ -4,6 +4,7 @@
 
 #include <mrpt/system/string_utils.h>
 
+#include <libslam/config/ini_parameters.hpp>
 #include <libslam/config/kf_slam_remarks.hpp>
 #include <libslam/config/text_file.hpp>
 
@@ -82,6 +83,7 @@ void append_remarks(const mrpt::config::CConfigFileBase& ini, std::vector<std::s
   std::vector<std::string> sections;
   ini.getAllSections(sections);
   for (const std::string& section : sections) {
+    if (is_parameter_section(section)) continue;
     std::vector<std::string> keys;
     ini.getAllKeys(section, keys);
     for (const std::string& key : keys) {

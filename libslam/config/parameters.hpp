@@ -8,6 +8,7 @@
 #include <libslam/config/parameters/calibration.hpp>
 #include <libslam/config/parameters/filter.hpp>
 #include <libslam/config/parameters/input.hpp>
+#include <libslam/config/parameters/map.hpp>
 #include <libslam/config/parameters/measurement.hpp>
 #include <libslam/config/parameters/motion.hpp>
 #include <libslam/config/parameters/output.hpp>
@@ -27,6 +28,7 @@ struct Parameters {
   AssociationParameters association;
   FilterParameters filter;
   PolicyParameters policies;
+  MapParameters map;
   OutputParameters output;
 
   void describe(auto& v) {
@@ -38,6 +40,7 @@ struct Parameters {
     v.section("association", association);
     v.section("filter", filter);
     v.section("policies", policies);
+    v.section("map", map);
     v.section("output", output);
   }
 };

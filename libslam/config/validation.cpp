@@ -25,9 +25,12 @@ std::vector<Conflict> find_conflicts(const Parameters& parameters, TruthAccess t
   check_calibration(parameters, conflicts);
   check_frontend(parameters, conflicts);
   check_displacement(parameters, conflicts);
+  check_spatial(parameters, conflicts);
+  check_images(parameters, conflicts);
   check_association(parameters, conflicts);
   check_filter(parameters, truth, conflicts);
   check_policies(parameters, conflicts);
+  check_map(parameters, conflicts);
   return conflicts;
 }
 

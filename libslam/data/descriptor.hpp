@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 
 namespace libslam {
 
@@ -30,6 +31,16 @@ inline double descriptor_distance(const Descriptor& a, const Descriptor& b) {
     }
   }
   return a.kind == Descriptor::Kind::kBits ? sum : std::sqrt(static_cast<double>(sum));
+}
+
+/// Distance on a scale from 0, the same, to about 1: share of the bits that differ, or Euclidean
+/// distance over 512, the length that OpenCV gives a SIFT vector. Infinite where the two cannot be
+/// compared.
+inline double relative_distance(const Descriptor& a, const Descriptor& b) {
+  if (a.kind != b.kind || a.size != b.size || a.size == 0)
+    return std::numeric_limits<double>::infinity();
+  const double largest = a.kind == Descriptor::Kind::kBits ? 8.0 * a.size : 512.0;
+  return descriptor_distance(a, b) / largest;
 }
 
 }  // namespace libslam

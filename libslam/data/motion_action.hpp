@@ -19,6 +19,8 @@ struct MotionAction {
   std::optional<Eigen::Vector2d> ticks;                 ///< encoder ticks left, right over dt [1]
   /// Mean velocity of the body over dt in its own frame: vx, vy, vz [m/s], wx, wy, wz [rad/s].
   std::optional<Eigen::Matrix<double, 6, 1>> twist;
+  double hold = 0.0;  ///< time for which the reading behind `twist` holds [s], of which dt is a
+                      ///< part; 0: dt
 };
 
 }  // namespace libslam

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -69,7 +70,8 @@ Index Ekf::stack(const GaussianState& state, std::span<const LinearizedMeasureme
                                   std::to_string(measurement.cov.rows()) + " x " +
                                   std::to_string(measurement.cov.cols()) + " covariance");
     const std::size_t first = placed_.size();
-    for (const auto& column : measurement.wrt) placed_.push_back(place(state, column, rows));
+    for (const auto& column : measurement.wrt)
+      if (!state.is_constant(column.block)) placed_.push_back(place(state, column, rows));
     rows_.push_back({row, rows, std::span(placed_.data() + first, placed_.size() - first)});
     nu_.segment(row, rows) = measurement.innovation;
     row += rows;
@@ -107,6 +109,25 @@ Innovation Ekf::innovate(const GaussianState& state, const LinearizedMeasurement
   return {squared_distance(m), log_det};
 }
 
+void Ekf::expect(const GaussianState& state, BlockId pose,
+                 std::span<const LinearizedMeasurement> measurements, JointInnovation& out) {
+  const Index m = stack(state, measurements);
+  out.nu = nu_.head(m);
+  out.cov.resize(m, m);
+  out.wrt_pose.setZero(m, state.size(pose));
+  out.trace_noise = 0.0;
+  state.covariance().project(rows_, out.cov);
+  Index row = 0;
+  for (const auto& measurement : measurements) {
+    const Index rows = measurement.innovation.size();
+    out.cov.block(row, row, rows, rows) += measurement.cov;
+    out.trace_noise += measurement.cov.trace();
+    for (const auto& [block, jacobian] : measurement.wrt)
+      if (block == pose) out.wrt_pose.middleRows(row, rows) = jacobian;
+    row += rows;
+  }
+}
+
 Correction Ekf::correct(GaussianState& state, BlockId pose,
                         std::span<const LinearizedMeasurement> measurements,
                         std::span<const BlockId> considered) {
@@ -123,6 +144,57 @@ Correction Ekf::correct(GaussianState& state, BlockId pose,
   state.covariance().gain(s_.topLeftCorner(m, m), white_.head(m), considered_, delta_.head(n));
   state.covariance().correct(frame_->retract(state, pose, delta_.head(n)));
   return {true, nis, static_cast<int>(m)};
+}
+
+// With W = L^-1 [0 .. R_i .. 0]^T, zero above the rows of i:  e_i = W^T L^-1 nu, C_i = R_i - W^T W.
+void Ekf::look_back(std::span<const LinearizedMeasurement> measurements,
+                    std::vector<Postfit>& out) {
+  Index m = 0;
+  for (const auto& measurement : measurements) m += measurement.innovation.size();
+  reserve_divided(m);
+  out.resize(measurements.size());
+  Index row = 0;
+  for (std::size_t i = 0; i < measurements.size(); ++i) {
+    const LinearizedMeasurement& measurement = measurements[i];
+    const Index rows = measurement.innovation.size(), behind = m - row;
+    auto w = divided_.topLeftCorner(behind, rows);
+    w.setZero();
+    w.topRows(rows) = measurement.cov;
+    s_.block(row, row, behind, behind).triangularView<Eigen::Lower>().solveInPlace(w);
+    const auto lower = s_.block(row, 0, rows, row + rows);
+    Postfit& postfit = out[i];
+    postfit.innovation = measurement.innovation;
+    postfit.cov_innovation = lower.leftCols(row) * lower.leftCols(row).transpose();
+    const MeasurementMatrix own = lower.rightCols(rows).triangularView<Eigen::Lower>();
+    postfit.cov_innovation.noalias() += own * own.transpose();
+    postfit.residual.noalias() = w.transpose() * white_.segment(row, behind);
+    postfit.cov_predicted = measurement.cov;
+    postfit.cov_predicted.noalias() -= w.transpose() * w;
+    row += rows;
+  }
+}
+
+BlockEvidence Ekf::look_back(std::span<const LinearizedMeasurement> measurements, BlockId block,
+                             Index size) {
+  Index m = 0;
+  for (const auto& measurement : measurements) m += measurement.innovation.size();
+  reserve_divided(m);
+  auto w = divided_.topLeftCorner(m, size);
+  w.setZero();
+  Index row = 0;
+  for (const auto& measurement : measurements) {
+    const Index rows = measurement.innovation.size();
+    for (const auto& column : measurement.wrt)
+      if (column.block == block) w.middleRows(row, rows) = column.jacobian;
+    row += rows;
+  }
+  s_.topLeftCorner(m, m).triangularView<Eigen::Lower>().solveInPlace(w);
+  return {w.transpose() * white_.head(m), w.transpose() * w};
+}
+
+void Ekf::reserve_divided(Index m) {
+  constexpr Index kWidest = std::max<Index>(kMaxMeasurementDimension, kMaxTangent);
+  if (divided_.rows() < m) divided_.resize(2 * m, kWidest);
 }
 
 }  // namespace libslam

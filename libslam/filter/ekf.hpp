@@ -15,6 +15,9 @@
 
 #include <Eigen/Core>
 
+#include <libslam/data/joint_innovation.hpp>
+#include <libslam/data/postfit.hpp>
+#include <libslam/state/block_evidence.hpp>
 #include <libslam/state/error_frame.hpp>
 #include <libslam/state/gaussian_state.hpp>
 #include <libslam/state/linearization.hpp>
@@ -49,11 +52,23 @@ class Ekf {
   /// infinite where S is not positive definite.
   Innovation innovate(const GaussianState& state, const LinearizedMeasurement& measurement);
 
+  /// The same of all measurements together, for those who judge them before a correction.
+  void expect(const GaussianState& state, BlockId pose,
+              std::span<const LinearizedMeasurement> measurements, JointInnovation& out);
+
   /// Joint update with all measurements stacked. `pose` is the reference pose of the error frame.
-  /// Blocks in `considered` keep estimate and covariance, but their uncertainty counts.
+  /// Blocks in `considered` keep estimate and covariance, but their uncertainty counts. Derivatives
+  /// with respect to constants of the state are left out.
   Correction correct(GaussianState& state, BlockId pose,
                      std::span<const LinearizedMeasurement> measurements,
                      std::span<const BlockId> considered = {});
+
+  /// After a correction that was applied, with the same measurements: what it left behind of each,
+  /// without the position of its feature. Exact where no block was considered.
+  void look_back(std::span<const LinearizedMeasurement> measurements, std::vector<Postfit>& out);
+  /// The same of one block: what the measurements said about it.
+  BlockEvidence look_back(std::span<const LinearizedMeasurement> measurements, BlockId block,
+                          Eigen::Index size);
 
  private:
   /// Stacks rows_ and nu_; returns the number of rows.
@@ -65,11 +80,14 @@ class Ekf {
   /// nu^T S^-1 nu from the factor in s_; leaves L^-1 nu in white_.
   double squared_distance(Eigen::Index m);
 
+  void reserve_divided(Eigen::Index m);
+
   std::unique_ptr<ErrorFrame> frame_;
   std::vector<PlacedJacobian> placed_;
   std::vector<JacobianRows> rows_;
   std::vector<Eigen::Index> considered_;
   Eigen::MatrixXd s_;
+  Eigen::MatrixXd divided_;  // L^-1 times R of one measurement, or the columns of one block
   Eigen::VectorXd nu_, white_, delta_;
 };
 

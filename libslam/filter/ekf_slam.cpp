@@ -1,18 +1,13 @@
 #include <algorithm>
-#include <cmath>
 #include <stdexcept>
 #include <string>
 
-#include <Eigen/Geometry>
-
 #include <libslam/filter/ekf_slam.hpp>
+#include <libslam/filter/pair_test.hpp>
 
 namespace libslam {
 
 namespace {
-
-/// A parameter counts as observed when the data halved its standard deviation.
-constexpr double kObservedRatio = 0.5;
 
 EkfSlamParts checked(EkfSlamParts parts) {
   if (!parts.motion || !parts.frame)
@@ -20,19 +15,21 @@ EkfSlamParts checked(EkfSlamParts parts) {
   if (!parts.displacement && (!parts.measurement || !parts.associator))
     throw std::invalid_argument(
         "EkfSlam needs a measurement model and an associator, or a displacement model");
+  if (parts.displacement && parts.disturbance)
+    throw std::invalid_argument("EkfSlam notices disturbances by landmarks alone");
   if (parts.displacement && parts.linearization)
     throw std::invalid_argument("EkfSlam linearizes displacements at the estimate");
+  if (parts.map && (parts.displacement || parts.linearization))
+    throw std::invalid_argument(
+        "EkfSlam starts in a map with a measurement model of landmarks, linearized at the "
+        "estimate");
   return parts;
 }
 
-/// Scales for the excitation: the motion itself is what shows the pose of a sensor.
-std::vector<double> nominal_values(const EkfSlamParts& parts) {
-  std::vector<double> nominal;
-  for (const auto& parameter : parts.motion->calibration())
-    nominal.push_back(parameter.prior_mean == 0.0 ? parameter.prior_sigma : parameter.prior_mean);
-  if (parts.displacement)
-    nominal.resize(nominal.size() + parts.displacement->model().calibration().size(), 1.0);
-  return nominal;
+BlockVector origin_of(const BlockSpec& pose) {
+  BlockVector origin = BlockVector::Zero(storage_dimension(pose));
+  if (pose.chart == Chart::kSE3) origin[6] = 1.0;
+  return origin;
 }
 
 }  // namespace
@@ -44,86 +41,62 @@ UpdateOutcome& UpdateOutcome::operator+=(const UpdateOutcome& other) {
   gated += other.gated;
   ambiguous += other.ambiguous;
   new_landmarks += other.new_landmarks;
+  if (!other.event.empty()) event = other.event;
   verdicts.insert(verdicts.end(), other.verdicts.begin(), other.verdicts.end());
   return *this;
 }
-
-/// Innovations of feature-landmark pairs, with a cheap bound that skips pairs far apart.
-class EkfSlam::PairTest final : public Compatibility {
- public:
-  PairTest(EkfSlam& filter, std::span<const Feature> features)
-      : filter_(filter), features_(features) {}
-
-  std::optional<Match> test(std::size_t feature, std::size_t landmark, double limit) override {
-    const BlockId block = filter_.parts_.registry.landmarks()[landmark].block;
-    if (std::isfinite(limit) && far_apart(feature, block, limit)) return std::nullopt;
-    filter_.linearizer_.linearize(*filter_.parts_.measurement, filter_.state_, filter_.pose_, block,
-                                  features_[feature], measurement_);
-    const Innovation innovation = filter_.ekf_.innovate(filter_.state_, measurement_);
-    return Match{innovation.mahalanobis2, innovation.log_det};
-  }
-
- private:
-  // In landmark space e = l_feature - l_map has covariance C <= 2 (C_feature + C_map), whatever
-  // their correlation, and e^T C^-1 e >= |e|^2 / trace(C).
-  bool far_apart(std::size_t feature, BlockId landmark, double limit) {
-    const GaussianState& state = filter_.state_;
-    if (feature != prepared_) {
-      filter_.parts_.measurement->initialize(state, filter_.pose_, features_[feature], where_);
-      trace_ = where_.cov_noise.trace();
-      for (const auto& [block, jacobian] : where_.wrt) {
-        const BlockMatrix spread = jacobian * state.covariance_of(block);
-        trace_ += spread.cwiseProduct(jacobian).sum();
-      }
-      prepared_ = feature;
-    }
-    const double distance2 = (where_.estimate - state.estimate(landmark)).squaredNorm();
-    return distance2 > limit * 2.0 * (trace_ + state.covariance_of(landmark).trace());
-  }
-
-  EkfSlam& filter_;
-  std::span<const Feature> features_;
-  LinearizedMeasurement measurement_;
-  Initialization where_;
-  std::size_t prepared_ = static_cast<std::size_t>(-1);
-  double trace_ = 0.0;
-};
 
 EkfSlam::EkfSlam(EkfSlamParts parts)
     : parts_(checked(std::move(parts))),
       ekf_(std::move(parts_.frame)),
       linearizer_(std::move(parts_.linearization)),
-      excitation_(nominal_values(parts_)) {
+      calibration_(*parts_.motion, displacement_model()) {
   if (parts_.measurement) {
     ekf_.frame().require_supported(parts_.measurement->landmark_spec());
     linearizer_.require_supported(parts_.measurement->landmark_spec());
   }
-  pose_ = state_.add({"pose", Chart::kSE2, 3, WorldRole::kPose}, Eigen::Vector3d::Zero(),
-                     parts_.cov_start);
+  const BlockSpec pose = parts_.motion->pose_spec();
+  ekf_.frame().require_supported(pose);
+  pose_ =
+      state_.add(pose, parts_.start.size() > 0 ? parts_.start : origin_of(pose), parts_.cov_start);
   linearizer_.add_block(state_, pose_);
-  add_calibration();
+  calibration_.add_to(state_, linearizer_);
+  if (parts_.map) start_in_map();
 }
 
-void EkfSlam::add_calibration() {
-  motion_calibration_ = add_blocks(parts_.motion->calibration());
-  if (parts_.displacement)
-    sensor_calibration_ = add_blocks(parts_.displacement->model().calibration());
-  calibration_ = motion_calibration_;
-  calibration_.insert(calibration_.end(), sensor_calibration_.begin(), sensor_calibration_.end());
-  calibration_jacobian_.resize(3, static_cast<Eigen::Index>(calibration_.size()));
+void EkfSlam::start_in_map() {
+  enter_map(*parts_.map,
+            {state_, pose_, calibration_, parts_.registry, parts_.measurement->landmark_spec()});
+  give_landmarks(parts_.map->landmarks_given);
+  parts_.map.reset();
 }
 
-CalibrationBlocks EkfSlam::add_blocks(const std::vector<CalibrationSpec>& parameters) {
-  CalibrationBlocks blocks;
-  for (const auto& parameter : parameters) {
-    parameters_.push_back(parameter);
-    blocks.push_back(
-        state_.add({parameter.name, Chart::kVector, 1, WorldRole::kNone},
-                   Eigen::VectorXd::Constant(1, parameter.prior_mean),
-                   Eigen::MatrixXd::Constant(1, 1, parameter.prior_sigma * parameter.prior_sigma)));
-    linearizer_.add_block(state_, blocks.back());
-  }
-  return blocks;
+void EkfSlam::give_landmarks(bool given) {
+  landmarks_given_ = given;
+  considered_.clear();
+  if (given)
+    for (const RegisteredLandmark& landmark : parts_.registry.landmarks())
+      if (!state_.is_constant(landmark.block)) considered_.push_back(landmark.block);
+  given_ = considered_.size();
+}
+
+SavedMap EkfSlam::saved_map() const {
+  if (!parts_.measurement) throw std::invalid_argument("a filter of displacements has no map");
+  return leave_map(state_, pose_, calibration_, parts_.registry,
+                   parts_.measurement->landmark_spec());
+}
+
+std::span<const BlockId> EkfSlam::considered() {
+  const std::span<const BlockId> calibration =
+      disturbed() ? std::span<const BlockId>(calibration_.all()) : calibration_.considered();
+  if (given_ == 0) return calibration;
+  considered_.resize(given_);
+  considered_.insert(considered_.end(), calibration.begin(), calibration.end());
+  return considered_;
+}
+
+const DisplacementModel* EkfSlam::displacement_model() const {
+  return parts_.displacement ? &parts_.displacement->model() : nullptr;
 }
 
 void EkfSlam::propagate(const MotionAction* action) {
@@ -133,43 +106,24 @@ void EkfSlam::propagate(const MotionAction* action) {
     linearizer_.stood(state_, pose_);
     return;
   }
-  linearizer_.linearize(*parts_.motion, state_, pose_, motion_calibration_, *action, step_);
-  if (!calibration_.empty()) observe_excitation(action->dt);
+  linearizer_.linearize(*parts_.motion, state_, pose_, calibration_.of_motion(), *action, step_);
+  if (parts_.process) scale_process_noise();
+  if (!calibration_.empty())
+    calibration_.observe(state_, pose_, step_, action->dt, displacement_model());
   ekf_.propagate(state_, step_);
   linearizer_.moved(state_, pose_);
-  for (std::size_t i = 0; i < calibration_.size(); ++i) {
-    const double walk = parameters_[i].random_walk;
-    if (walk > 0.0 && action->dt > 0.0)
-      state_.covariance().add_noise(state_.offset(calibration_[i]),
-                                    BlockMatrix::Constant(1, 1, walk * walk * action->dt));
-  }
+  calibration_.diffuse(state_, action->dt);
 }
 
-void EkfSlam::observe_excitation(double dt) {
-  const Eigen::Rotation2Dd R_robot_world(-state_.estimate(pose_)[2]);
-  Eigen::Matrix3d to_robot = Eigen::Matrix3d::Identity();
-  to_robot.topLeftCorner<2, 2>() = R_robot_world.toRotationMatrix();
-  calibration_jacobian_.setZero();
-  for (const auto& [block, jacobian] : step_.wrt)
-    for (std::size_t i = 0; i < calibration_.size(); ++i)
-      if (block == calibration_[i])
-        calibration_jacobian_.col(static_cast<Eigen::Index>(i)) = to_robot * jacobian;
-  if (parts_.displacement) {
-    Eigen::Vector3d moved = to_robot * (step_.estimate - state_.estimate(pose_));
-    moved[2] = wrap_angle(moved[2]);
-    calibration_jacobian_.rightCols(static_cast<Eigen::Index>(sensor_calibration_.size())) =
-        parts_.displacement->model().excitation(moved);
-  }
-  excitation_.observe(calibration_jacobian_, to_robot * step_.cov_noise * to_robot.transpose(), dt);
-  considered_.clear();
-  for (std::size_t i = 0; i < calibration_.size(); ++i)
-    if (!excitation_.excited(i)) considered_.push_back(calibration_[i]);
+void EkfSlam::scale_process_noise() {
+  for (const BlockJacobian& column : step_.wrt)
+    if (column.block == pose_) parts_.process->scale(column.jacobian, step_.cov_noise);
 }
 
 UpdateOutcome EkfSlam::measure_displacement(const Feature& reading) {
   const PhaseTimer timer(times_, Phase::kUpdate);
-  const DisplacementOutcome done =
-      parts_.displacement->apply(state_, ekf_, pose_, sensor_calibration_, considered_, reading);
+  const DisplacementOutcome done = parts_.displacement->apply(
+      state_, ekf_, pose_, calibration_.of_sensor(), calibration_.considered(), reading);
   UpdateOutcome outcome;
   outcome.nis = done.correction.nis;
   outcome.nis_dof = done.correction.dof;
@@ -184,70 +138,119 @@ UpdateOutcome EkfSlam::update(std::span<const Feature> features) {
     for (const Feature& reading : features) outcome += measure_displacement(reading);
     return outcome;
   }
-  {
-    const PhaseTimer timer(times_, Phase::kAssociate);
-    PairTest test(*this, features);
-    parts_.associator->associate(features, parts_.registry, test, verdicts_);
-    accepted_.clear();
-    accepted_.reserve(features.size());
-    for (std::size_t i = 0; i < features.size(); ++i) {
-      const Verdict& verdict = verdicts_[i];
-      if (verdict.outcome == Outcome::kGated) ++outcome.gated;
-      if (verdict.outcome == Outcome::kAmbiguous) ++outcome.ambiguous;
-      if (verdict.outcome != Outcome::kPaired) continue;
-      const BlockId landmark = parts_.registry.landmarks()[verdict.landmark].block;
-      linearizer_.linearize(*parts_.measurement, state_, pose_, landmark, features[i],
-                            accepted_.emplace_back());
-    }
+  if (parts_.noise) {
+    adapted_.assign(features.begin(), features.end());
+    parts_.noise->apply(adapted_);
+    features = adapted_;
   }
-  {
-    const PhaseTimer timer(times_, Phase::kUpdate);
-    const Eigen::Vector2d before = state_.estimate(pose_).head<2>();
-    const Correction correction = ekf_.correct(state_, pose_, accepted_, considered_);
-    if (correction.applied) {
-      linearizer_.corrected(state_, pose_, before);
-      outcome.accepted = static_cast<int>(accepted_.size());
-      outcome.nis = correction.nis;
-      outcome.nis_dof = correction.dof;
-    } else {
-      // An innovation covariance that is not positive definite: nothing was used.
-      for (Verdict& verdict : verdicts_)
-        if (verdict.outcome == Outcome::kPaired) verdict.outcome = Outcome::kGated;
-      outcome.gated += static_cast<int>(accepted_.size());
-    }
-  }
+  associate(features);
+  if (parts_.disturbance) respond(features, outcome);
+  correct(features, outcome);
   add_landmarks(features, outcome);
   return outcome;
 }
 
+AssociatedObservation EkfSlam::associate(std::span<const Feature> features) {
+  const PhaseTimer timer(times_, Phase::kAssociate);
+  PairTest test(
+      {state_, pose_, ekf_, linearizer_, *parts_.measurement, parts_.registry, selected_pairs_},
+      features);
+  parts_.associator->associate(features, parts_.registry, test, verdicts_);
+  if (landmarks_given_)
+    for (Verdict& verdict : verdicts_)
+      if (verdict.outcome == Outcome::kNew) verdict.outcome = Outcome::kAmbiguous;
+  linearize_pairs(features);
+  return {features, verdicts_, accepted(), measured_};
+}
+
+void EkfSlam::linearize_pairs(std::span<const Feature> features) {
+  measured_.clear();
+  measured_.reserve(features.size());
+  used_.clear();
+  const auto linearize = [&](Outcome outcome) {
+    for (std::size_t i = 0; i < features.size(); ++i) {
+      if (verdicts_[i].outcome != outcome) continue;
+      const BlockId landmark = parts_.registry.landmarks()[verdicts_[i].landmark].block;
+      linearizer_.linearize(*parts_.measurement, state_, pose_, landmark, features[i],
+                            measured_.emplace_back());
+      if (outcome == Outcome::kPaired) used_.push_back(i);
+    }
+  };
+  linearize(Outcome::kPaired);
+  if (parts_.disturbance) linearize(Outcome::kGated);
+}
+
+void EkfSlam::respond(std::span<const Feature> features, UpdateOutcome& outcome) {
+  DisturbanceResponse& response = *parts_.disturbance;
+  const Doubt doubt = response.answer({state_, pose_, ekf_, *parts_.measurement, parts_.registry,
+                                       [&] { return associate(features); }},
+                                      {features, verdicts_, accepted(), measured_});
+  if (doubt == Doubt::kNone) return;
+  if (response.began()) outcome.event = "disturbance";
+  if (response.became_lost()) outcome.event = "lost";
+  for (Verdict& verdict : verdicts_)
+    if (verdict.outcome == Outcome::kNew || doubt == Doubt::kUnexplained)
+      verdict.outcome = Outcome::kAmbiguous;
+  if (doubt == Doubt::kUnexplained) linearize_pairs(features);
+}
+
+void EkfSlam::correct(std::span<const Feature> features, UpdateOutcome& outcome) {
+  const PhaseTimer timer(times_, Phase::kUpdate);
+  const Eigen::Vector2d before = state_.estimate(pose_).head<2>();
+  const Correction correction = ekf_.correct(state_, pose_, accepted(), considered());
+  if (correction.applied) {
+    linearizer_.corrected(state_, pose_, before);
+    outcome.accepted = static_cast<int>(used_.size());
+    outcome.nis = correction.nis;
+    outcome.nis_dof = correction.dof;
+    if (parts_.noise && !disturbed()) {
+      ekf_.look_back(accepted(), postfits_);
+      for (std::size_t i = 0; i < used_.size(); ++i) postfits_[i].feature = used_[i];
+      parts_.noise->observe(features, postfits_);
+    }
+    if (parts_.process && !disturbed())
+      parts_.process->observe(ekf_.look_back(accepted(), pose_, state_.size(pose_)));
+  } else {
+    // An innovation covariance that is not positive definite: nothing was used.
+    for (Verdict& verdict : verdicts_)
+      if (verdict.outcome == Outcome::kPaired) verdict.outcome = Outcome::kGated;
+  }
+  for (const Verdict& verdict : verdicts_) {
+    if (verdict.outcome == Outcome::kGated) ++outcome.gated;
+    if (verdict.outcome == Outcome::kAmbiguous) ++outcome.ambiguous;
+  }
+}
+
 void EkfSlam::add_landmarks(std::span<const Feature> features, UpdateOutcome& outcome) {
   const PhaseTimer timer(times_, Phase::kAugment);
-  for (const Verdict& verdict : verdicts_)
-    if (verdict.outcome == Outcome::kPaired) parts_.registry.record_sighting(verdict.landmark);
+  for (std::size_t i = 0; i < features.size(); ++i)
+    if (verdicts_[i].outcome == Outcome::kPaired)
+      parts_.registry.record_sighting(verdicts_[i].landmark, features[i].appearance);
   for (std::size_t i = 0; i < features.size(); ++i) {
     if (verdicts_[i].outcome != Outcome::kNew) continue;
+    if (!parts_.measurement->initializable(features[i])) {
+      verdicts_[i].outcome = Outcome::kAmbiguous;
+      ++outcome.ambiguous;
+      continue;
+    }
     linearizer_.initialize(*parts_.measurement, state_, pose_, features[i], initialization_);
     const BlockId block = state_.augment(parts_.measurement->landmark_spec(), initialization_);
     linearizer_.added(state_, pose_, block, features[i].id);
     verdicts_[i].landmark = parts_.registry.size();
-    parts_.registry.add(block, features[i].id);
+    parts_.registry.add(block, features[i].id, features[i].appearance);
     ++outcome.new_landmarks;
   }
   outcome.verdicts = verdicts_;
-  for (const BlockId given_up : parts_.registry.record_update()) state_.remove(given_up);
+  const std::vector<BlockId> given_up = parts_.registry.record_update();
+  for (const BlockId block : given_up) state_.remove(block);
+  if (landmarks_given_ && !given_up.empty()) give_landmarks(true);
 }
 
-std::vector<CalibrationValue> EkfSlam::calibration() const {
-  std::vector<CalibrationValue> values;
-  for (std::size_t i = 0; i < calibration_.size(); ++i) {
-    const CalibrationSpec& parameter = parameters_[i];
-    const double sigma = std::sqrt(state_.covariance_of(calibration_[i])(0, 0));
-    values.push_back(
-        {parameter.name, state_.estimate(calibration_[i])[0], sigma, parameter.prior_mean,
-         parameter.prior_sigma,
-         excitation_.ever_excited(i) && sigma < kObservedRatio * parameter.prior_sigma});
-  }
-  return values;
+std::vector<AdaptedNoise> EkfSlam::noise() const {
+  std::vector<AdaptedNoise> all;
+  if (parts_.noise) all = parts_.noise->noise();
+  if (parts_.process) all.push_back(parts_.process->noise());
+  return all;
 }
 
 std::vector<LandmarkEstimate> EkfSlam::landmarks(bool with_provisional) const {
@@ -263,13 +266,9 @@ std::vector<LandmarkEstimate> EkfSlam::landmarks(bool with_provisional) const {
 }
 
 bool EkfSlam::healthy() const {
-  const auto pose = state_.estimate(pose_);
-  const Eigen::Vector3d variances = state_.covariance_of(pose_).diagonal();
-  bool healthy = pose.allFinite() && variances.allFinite() && (variances.array() >= 0.0).all();
-  for (const BlockId block : calibration_)
-    healthy = healthy && state_.estimate(block).allFinite() &&
-              state_.covariance_of(block)(0, 0) >= 0.0 && state_.covariance_of(block).allFinite();
-  return healthy;
+  const TangentVector variances = state_.covariance_of(pose_).diagonal();
+  return state_.estimate(pose_).allFinite() && variances.allFinite() &&
+         (variances.array() >= 0.0).all() && calibration_.healthy(state_);
 }
 
 }  // namespace libslam

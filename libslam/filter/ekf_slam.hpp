@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include <Eigen/Core>
@@ -14,12 +15,17 @@
 #include <libslam/data/motion_action.hpp>
 #include <libslam/data/phase_times.hpp>
 #include <libslam/data/step_record.hpp>
+#include <libslam/filter/calibration_states.hpp>
 #include <libslam/filter/displacement_update.hpp>
+#include <libslam/filter/disturbance_response.hpp>
 #include <libslam/filter/ekf.hpp>
 #include <libslam/filter/linearizer.hpp>
+#include <libslam/filter/map_start.hpp>
+#include <libslam/filter/selected_pairs.hpp>
 #include <libslam/measurement/measurement_model.hpp>
 #include <libslam/motion/motion_model.hpp>
-#include <libslam/policy/excitation.hpp>
+#include <libslam/policy/noise_policy.hpp>
+#include <libslam/policy/process_scale.hpp>
 
 namespace libslam {
 
@@ -33,9 +39,14 @@ struct EkfSlamParts {
   /// Present: features are readings of a sensor's own path, and there is no map; `measurement` and
   /// `associator` may then be null.
   std::optional<DisplacementUpdate> displacement;
+  std::unique_ptr<NoisePolicy> noise;              ///< null: R as the features bring it
+  std::unique_ptr<ProcessScale> process;           ///< null: Q as the motion model says
+  std::optional<DisturbanceResponse> disturbance;  ///< absent: every observation is believed
   LandmarkRegistry registry{1, 0};
-  Eigen::Matrix3d cov_start = Eigen::Matrix3d::Zero();  ///< covariance of the start pose (0, 0, 0)
-  Eigen::Matrix3d cov_no_odometry = Eigen::Matrix3d::Zero();  ///< added by a step without odometry
+  std::optional<MapStart> map;  ///< to start in; needs no point of linearization but the estimate
+  BlockVector start;  ///< start pose, storage of the motion model's pose; empty: the origin
+  BlockMatrix cov_start = BlockMatrix::Zero(3, 3);        ///< of its error, tangent coordinates
+  BlockMatrix cov_no_odometry = BlockMatrix::Zero(3, 3);  ///< added by a step without odometry
 };
 
 /// What one observation did to the filter.
@@ -44,13 +55,15 @@ struct UpdateOutcome {
   int nis_dof = 0;
   int accepted = 0, gated = 0, ambiguous = 0, new_landmarks = 0;
   std::vector<Verdict> verdicts;  ///< one per feature
+  std::string event;              ///< what a run should tell: "disturbance", "lost", "relocalized"
 
   UpdateOutcome& operator+=(const UpdateOutcome& other);
 };
 
 class EkfSlam {
  public:
-  /// Throws std::invalid_argument if a part is missing or the error frame does not support a block.
+  /// Throws std::invalid_argument if a part is missing, the error frame does not support a block,
+  /// or the map to start in does not fit.
   explicit EkfSlam(EkfSlamParts parts);
 
   /// Moves the robot; null: a step without odometry.
@@ -59,24 +72,43 @@ class EkfSlam {
   /// the displacement since the reading before, gates and corrects.
   UpdateOutcome update(std::span<const Feature> features);
 
+  /// Localization from now on: the landmarks keep their estimates and covariances, which count in
+  /// every innovation, and none is added (MapStart::landmarks_given); or SLAM again.
+  void give_landmarks(bool given);
+
   const GaussianState& state() const { return state_; }
   BlockId pose() const { return pose_; }
   const LandmarkRegistry& registry() const { return parts_.registry; }
   const PhaseTimes& times() const { return times_; }
   PhaseTimes& times() { return times_; }
 
-  std::vector<CalibrationValue> calibration() const;
+  std::vector<CalibrationValue> calibration() const { return calibration_.values(state_); }
+  /// What the policies believe of the noise; empty without one.
+  std::vector<AdaptedNoise> noise() const;
   /// Landmarks by identity; provisional ones only on demand.
   std::vector<LandmarkEstimate> landmarks(bool with_provisional = false) const;
+  /// The map with everything a filter needs to go on from here. Throws std::invalid_argument if it
+  /// measures displacements and has no map.
+  SavedMap saved_map() const;
   /// False once an estimate or a variance is not finite or a variance is negative.
   bool healthy() const;
 
  private:
-  class PairTest;
-  void add_calibration();
-  CalibrationBlocks add_blocks(const std::vector<CalibrationSpec>& parameters);
+  bool disturbed() const { return parts_.disturbance && parts_.disturbance->disturbed(); }
+  std::span<const LinearizedMeasurement> accepted() const {
+    return std::span(measured_).first(used_.size());
+  }
+  const DisplacementModel* displacement_model() const;
+  void start_in_map();
+  void scale_process_noise();
   UpdateOutcome measure_displacement(const Feature& reading);
-  void observe_excitation(double dt);
+  /// Blocks that count with their uncertainty in a correction and do not learn.
+  std::span<const BlockId> considered();
+  // The steps of an update, each leaving behind what the next one needs.
+  AssociatedObservation associate(std::span<const Feature> features);
+  void linearize_pairs(std::span<const Feature> features);
+  void respond(std::span<const Feature> features, UpdateOutcome& outcome);
+  void correct(std::span<const Feature> features, UpdateOutcome& outcome);
   void add_landmarks(std::span<const Feature> features, UpdateOutcome& outcome);
 
   EkfSlamParts parts_;
@@ -84,15 +116,17 @@ class EkfSlam {
   Linearizer linearizer_;
   GaussianState state_;
   BlockId pose_;
-  std::vector<CalibrationSpec> parameters_;  // of the motion, then of the sensor
-  CalibrationBlocks motion_calibration_, sensor_calibration_;
-  CalibrationBlocks calibration_;  // both, as `parameters_`
-  Excitation excitation_;
+  CalibrationStates calibration_;
+  std::vector<BlockId> considered_;  // the given landmarks, then calibration
+  std::size_t given_ = 0;            // how many of them are landmarks
+  bool landmarks_given_ = false;     // localization: no new landmarks
   MotionStep step_;
-  Eigen::Matrix3Xd calibration_jacobian_;
-  std::vector<BlockId> considered_;  // calibration that is not excited now
-  std::vector<LinearizedMeasurement> accepted_;
+  std::vector<Feature> adapted_;  // the features with the noise of the policy
   std::vector<Verdict> verdicts_;
+  SelectedPairs selected_pairs_;
+  std::vector<LinearizedMeasurement> measured_;  // accepted ones, then rejected ones
+  std::vector<std::size_t> used_;                // the features behind the accepted ones
+  std::vector<Postfit> postfits_;
   Initialization initialization_;
   PhaseTimes times_;
 };

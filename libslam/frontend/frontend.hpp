@@ -7,6 +7,7 @@
 //         and counted, never thrown.
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include <mrpt/obs/CSensoryFrame.h>
@@ -26,6 +27,8 @@ class Frontend {
                        std::vector<FeatureBatch>& batches) = 0;
   /// Measurements left out so far because they were unusable.
   virtual std::int64_t unusable() const = 0;
+  /// One line for each of the first defects, and whatever else the user should know.
+  virtual std::vector<std::string> warnings() const { return {}; }
 };
 
 }  // namespace libslam

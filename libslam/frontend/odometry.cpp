@@ -88,6 +88,45 @@ bool is_covariance(const Eigen::Matrix3d& cov) {
   return eigen.eigenvalues()[0] >= -rounding;
 }
 
+/// All six velocities of a movement, if it has them; `action` may be null.
+std::optional<HeldTwist> twist_of(const CActionRobotMovement3D* action) {
+  constexpr std::size_t kCount = 6;
+  if (action == nullptr || action->hasVelocities.size() != kCount ||
+      static_cast<std::size_t>(action->velocities.size()) != kCount)
+    return std::nullopt;
+  for (const bool present : action->hasVelocities)
+    if (!present) return std::nullopt;
+  const auto& v = action->velocities;  // x, y, z, yaw, pitch, roll
+  HeldTwist held;
+  held.twist << v[0], v[1], v[2], v[5], v[4], v[3];
+  return held;
+}
+
+/// The odometry of a step of body velocities.
+std::optional<MotionAction> read_twist(const LogStep& step) {
+  std::optional<HeldTwist> held = step.twist;
+  if (!held) {
+    if (!step.action) return std::nullopt;
+    held = twist_of(step.action->getActionByClass<CActionRobotMovement3D>().get());
+    if (!held)
+      throw std::invalid_argument("input.odometry: step " + std::to_string(step.index) +
+                                  " has no velocities in space (CActionRobotMovement3D)");
+  }
+  if (!held->twist.allFinite() || held->twist.cwiseAbs().maxCoeff() > kFastest)
+    throw UnusableOdometry(step.index, "a velocity beyond 100 m/s or 100 rad/s");
+  MotionAction action;
+  action.time = step.time;
+  action.dt = step.dt;
+  action.twist = held->twist;
+  action.hold = held->hold;
+  return action;
+}
+
+void require_interval(const LogStep& step) {
+  if (!(std::isfinite(step.time) && std::isfinite(step.dt) && step.dt >= 0.0))
+    throw UnusableOdometry(step.index, "the interval of the odometry is not finite and positive");
+}
+
 /// Forward distance and turn of an increment.
 Eigen::Vector2d forward_movement(const Eigen::Vector3d& increment) {
   const double heading = 0.5 * increment[2];
@@ -120,20 +159,23 @@ OdometryReader::Choice OdometryReader::choice_of(const InputParameters& input) {
   if (input.odometry == "increments") return Choice::kIncrements;
   if (input.odometry == "velocities") return Choice::kVelocities;
   if (input.odometry == "ticks") return Choice::kTicks;
+  if (input.odometry == "twist") return Choice::kTwist;
   throw std::invalid_argument("input.odometry: '" + input.odometry +
-                              "' is none of auto, increments, velocities, ticks");
+                              "' is none of auto, increments, velocities, ticks, twist");
 }
 
 std::optional<MotionAction> OdometryReader::read(const LogStep& step) {
+  if (choice_ == Choice::kTwist) {
+    require_interval(step);
+    return read_twist(step);
+  }
   if (!step.action) return std::nullopt;
   const std::optional<Movement> movement = best_movement(step);
   if (!movement) return std::nullopt;
   if (!movement->mean.allFinite()) {
     throw UnusableOdometry(step.index, "the pose increment is not finite");
   }
-  if (!(std::isfinite(step.time) && std::isfinite(step.dt) && step.dt >= 0.0)) {
-    throw UnusableOdometry(step.index, "the interval of the odometry is not finite and positive");
-  }
+  require_interval(step);
   MotionAction action;
   action.time = step.time;
   action.dt = step.dt;

@@ -11,6 +11,10 @@
 // | increments     | no                               | no                               |
 // | velocities     | unless insane (then it throws)   | no                               |
 // | ticks          | no                               | unless insane (then it throws)   |
+//
+// With `input.odometry` twist the velocities of the body drive a robot in space: those of a sensor
+// (LogStep::twist), else all six of a CActionRobotMovement3D. Its pose increments are not looked
+// at.
 
 #include <cstdint>
 #include <optional>
@@ -55,7 +59,7 @@ class OdometryReader {
   std::vector<std::string> warnings() const;
 
  private:
-  enum class Choice { kAuto, kIncrements, kVelocities, kTicks };
+  enum class Choice { kAuto, kIncrements, kVelocities, kTicks, kTwist };
   static Choice choice_of(const InputParameters& input);
 
   void check_covariance(std::int64_t step, MotionAction& action);

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include <Eigen/Dense>
@@ -10,6 +11,9 @@ namespace libslam {
 namespace {
 
 using Observation = mrpt::obs::CObservationBearingRange;
+
+/// A log with a new label in every observation must not cost more and more.
+constexpr int kMostChannels = 100;
 
 Eigen::Matrix2d diagonal(double sigma_range, double sigma_bearing) {
   return Eigen::Vector2d(sigma_range * sigma_range, sigma_bearing * sigma_bearing).asDiagonal();
@@ -43,6 +47,15 @@ RangeBearingObservation::RangeBearingObservation(const FrontendParameters& front
       with_identities_(with_identities),
       sensor_label_(std::move(sensor_label)) {}
 
+int RangeBearingObservation::channel_of(const std::string& label) {
+  const auto known = std::ranges::find(labels_, label);
+  const auto channel = static_cast<int>(known - labels_.begin());
+  if (known != labels_.end()) return channel;
+  if (channel == kMostChannels) return kMostChannels - 1;
+  labels_.push_back(label);
+  return channel;
+}
+
 void RangeBearingObservation::extract(const mrpt::obs::CSensoryFrame& frame,
                                       std::vector<FeatureBatch>& batches) {
   batches.clear();
@@ -51,6 +64,7 @@ void RangeBearingObservation::extract(const mrpt::obs::CSensoryFrame& frame,
     if (observation == nullptr) continue;
     if (!sensor_label_.empty() && observation->sensorLabel != sensor_label_) continue;
     const auto& on_robot = observation->sensorLocationOnRobot;
+    const int channel = channel_of(observation->sensorLabel);
     FeatureBatch batch;
     batch.reserve(observation->sensedData.size());
     for (const auto& measured : observation->sensedData) {
@@ -63,6 +77,7 @@ void RangeBearingObservation::extract(const mrpt::obs::CSensoryFrame& frame,
       Feature& feature = batch.emplace_back();
       const bool identified = with_identities_ && measured.landmarkID >= 0;
       feature.id = identified ? measured.landmarkID : kNoIdentity;
+      feature.channel = channel;
       feature.z = Eigen::Vector2d(range, measured.yaw);
       feature.cov = only_configured_ ? configured_ : noise_of(*observation, measured, configured_);
       feature.T_robot_sensor = {on_robot.x(), on_robot.y(), on_robot.yaw()};

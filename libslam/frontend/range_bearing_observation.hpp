@@ -13,7 +13,8 @@ namespace libslam {
 /// Noise of a feature: covariance of the observation where the log has one (validCovariances), else
 /// the sensor sigmas of the log where positive, else the configured sigmas; `measurement.noise:
 /// configured` takes the configured ones always. Elevation is projected out: range * cos(pitch);
-/// the sensor's pose contributes x, y and yaw.
+/// the sensor's pose contributes x, y and yaw. Channels number the sensor labels by their first
+/// appearance; beyond a hundred, labels share the last channel.
 class RangeBearingObservation final : public Frontend {
  public:
   /// `with_identities` false: features carry none, whatever the log says.
@@ -24,10 +25,13 @@ class RangeBearingObservation final : public Frontend {
   std::int64_t unusable() const override { return unusable_; }
 
  private:
+  int channel_of(const std::string& label);
+
   FrontendParameters frontend_;
   MeasurementMatrix configured_;
   bool only_configured_, with_identities_;
   std::string sensor_label_;
+  std::vector<std::string> labels_;  ///< by channel
   std::int64_t unusable_ = 0;
 };
 

@@ -118,13 +118,13 @@ void PairAssembler::finish() {
 double PairAssembler::place(std::optional<double> stamp, std::int64_t entry) {
   if (!stamp)
     intake_.fill_in(entry, "no valid time stamp");
-  else if (any_step_ && *stamp < time_) {
-    intake_.mend(entry, "time goes back by " + std::to_string(time_ - *stamp) + " s");
+  else if (clock_.any_step && *stamp < clock_.time) {
+    intake_.mend(entry, "time goes back by " + std::to_string(clock_.time - *stamp) + " s");
     stamp.reset();
   }
-  if (stamp) time_ = *stamp;
-  any_step_ = true;
-  return time_;
+  if (stamp) clock_.time = *stamp;
+  clock_.any_step = true;
+  return clock_.time;
 }
 
 void PairAssembler::emit(const mrpt::obs::CSensoryFrame::Ptr& frame, std::int64_t entry) {
@@ -133,8 +133,9 @@ void PairAssembler::emit(const mrpt::obs::CSensoryFrame::Ptr& frame, std::int64_
   if (frame) stamp = first_stamp(*frame);
   if (!stamp && waiting_) stamp = first_stamp(*waiting_);
   step.time = place(stamp, entry);
-  if (stamp && motion_time_ && waiting_) step.dt = std::max(0.0, step.time - *motion_time_);
-  if (stamp) motion_time_ = step.time;
+  if (stamp && clock_.motion_time && waiting_)
+    step.dt = std::max(0.0, step.time - *clock_.motion_time);
+  if (stamp) clock_.motion_time = step.time;
   step.action = std::exchange(waiting_, nullptr);
   step.has_motion_covariance = step.action && has_covariance(*step.action);
   step.frame = frame;

@@ -33,6 +33,15 @@ class PairAssembler {
   /// Steps that are complete; `index` is not set.
   std::deque<LogStep>& ready() { return ready_; }
 
+  /// What the times of further steps go on from.
+  struct Clock {
+    bool any_step = false;
+    double time = 0.0;                  ///< of the last step
+    std::optional<double> motion_time;  ///< of the last step that had a valid one
+  };
+  const Clock& clock() const { return clock_; }
+  void set_clock(const Clock& clock) { clock_ = clock; }
+
  private:
   void emit(const mrpt::obs::CSensoryFrame::Ptr& frame, std::int64_t entry);
   double place(std::optional<double> stamp, std::int64_t entry);
@@ -40,9 +49,7 @@ class PairAssembler {
   Intake& intake_;
   mrpt::obs::CActionCollection::Ptr waiting_;
   std::int64_t waiting_entry_ = 0;
-  double time_ = 0.0;  ///< of the last step
-  bool any_step_ = false;
-  std::optional<double> motion_time_;  ///< time of the last step that had a valid one
+  Clock clock_;
   std::deque<LogStep> ready_;
 };
 

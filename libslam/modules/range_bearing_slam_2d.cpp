@@ -51,16 +51,12 @@ void RangeBearingSlam2D::start() {
 void RangeBearingSlam2D::processActionObservation(
     std::shared_ptr<mrpt::obs::CActionCollection>& action,
     std::shared_ptr<mrpt::obs::CSensoryFrame>& SF) {
-  if (impl_->steps == 0) {
+  if (impl_->feed.steps() == 0) {
     start();  // with the options as they are now
     warn_about_options();
   }
-  const LogStep step = impl_->assemble(action, SF);
   const std::size_t known_landmarks = impl_->filter().registry().size();
-  if (!step.action && known_landmarks > 0)
-    impl_->pipeline.process_frame(step);  // it may have moved unseen
-  else
-    impl_->pipeline.process(step);
+  impl_->feed.process(action, SF);
   association_ = {};
   for (std::size_t i = 0; i < known_landmarks; ++i) association_.predictions_IDs.push_back(i);
   report_step();
@@ -68,7 +64,7 @@ void RangeBearingSlam2D::processActionObservation(
 
 void RangeBearingSlam2D::report_step() {
   Impl& impl = *impl_;
-  const UpdateOutcome& outcome = impl.pipeline.last_update();
+  const UpdateOutcome& outcome = impl.feed.pipeline().last_update();
   for (std::size_t i = 0; i < outcome.verdicts.size(); ++i) {
     const Verdict& verdict = outcome.verdicts[i];
     if (verdict.outcome == Outcome::kPaired)
@@ -79,13 +75,12 @@ void RangeBearingSlam2D::report_step() {
   association_.results.distance = outcome.nis;
   if (options.create_simplemap) impl.path.emplace_back(impl.pose().head<2>());
 
-  MRPT_LOG_DEBUG_STREAM("pair " << impl.steps << ": " << outcome.accepted << " sightings, "
+  MRPT_LOG_DEBUG_STREAM("pair " << impl.feed.steps() << ": " << outcome.accepted << " sightings, "
                                 << outcome.new_landmarks << " new landmarks, "
                                 << outcome.gated + outcome.ambiguous << " not used");
-  const auto& warnings = impl.intake.summary().warnings;
-  while (impl.warnings_logged < warnings.size()) MRPT_LOG_WARN(warnings[impl.warnings_logged++]);
+  for (const std::string& warning : impl.feed.take_warnings()) MRPT_LOG_WARN(warning);
   if (std::exchange(impl.healthy, impl.filter().healthy()) && !impl.healthy)
-    MRPT_LOG_ERROR_STREAM("the filter diverged at pair " << impl.steps);
+    MRPT_LOG_ERROR_STREAM("the filter diverged at pair " << impl.feed.steps());
 }
 
 void RangeBearingSlam2D::warn_about_options() const {
@@ -129,6 +124,15 @@ void RangeBearingSlam2D::getCurrentState(mrpt::poses::CPosePDFGaussian& out_robo
   out_fullState.asEigen() = mean;
   out_fullCovariance.setSize(size, size);
   out_fullCovariance.asEigen() = filter.state().full_covariance()(coordinates, coordinates);
+}
+
+void RangeBearingSlam2D::saveState(mrpt::serialization::CArchive& out) const {
+  write_state(out, impl_->feed.state());
+}
+
+void RangeBearingSlam2D::loadState(mrpt::serialization::CArchive& in) {
+  impl_ = std::make_unique<Impl>(options.getEffectiveParameters(), read_state(in));
+  association_ = {};
 }
 
 std::vector<CalibrationValue> RangeBearingSlam2D::getCurrentCalibration() const {

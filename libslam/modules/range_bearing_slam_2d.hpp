@@ -41,6 +41,9 @@ class CSensoryFrame;
 namespace mrpt::opengl {
 class CSetOfObjects;
 }
+namespace mrpt::serialization {
+class CArchive;
+}
 
 namespace libslam {
 
@@ -76,6 +79,15 @@ class RangeBearingSlam2D : public mrpt::system::COutputLogger {
   void getCurrentRobotPose(mrpt::poses::CPosePDFGaussian& out_robotPose) const;
   /// The calibration parameters that `options.parameters.calibration` enables.
   std::vector<CalibrationValue> getCurrentCalibration() const;
+
+  /// Everything that the next pair depends on: what runs on after loadState(), with the same
+  /// options, gives the results of a run without a break. What policies learned and the phase of an
+  /// update schedule start anew. saveState() throws std::invalid_argument if the filter has
+  /// diverged or has no landmarks to its model; loadState() throws InputError (io/input_error.hpp)
+  /// on anything that is no saved state, or is damaged or cut off, std::invalid_argument if the
+  /// state does not fit the options, and then changes nothing.
+  void saveState(mrpt::serialization::CArchive& out) const;
+  void loadState(mrpt::serialization::CArchive& in);
 
   /// Ellipses of the landmarks and of the robot, scaled by `options.quantiles_3D_representation`.
   /// Replaces the content of `outObj`; makes one if it is null.

@@ -1,18 +1,14 @@
 #include <algorithm>
-#include <array>
-#include <optional>
 #include <ostream>
 #include <string>
-#include <string_view>
 
 #include <mrpt/bayes/CKalmanFilterCapable.h>
 #include <mrpt/config/CConfigFileBase.h>
 #include <mrpt/core/bits_math.h>
 #include <mrpt/slam/data_association.h>
-#include <mrpt/system/string_utils.h>
 
 #include <libslam/config/config_error.hpp>
-#include <libslam/config/parameter_table.hpp>
+#include <libslam/config/ini_parameters.hpp>
 #include <libslam/config/validation.hpp>
 #include <libslam/modules/range_bearing_slam_2d.hpp>
 
@@ -27,58 +23,10 @@ using mrpt::config::CConfigFileBase;
 using mrpt::slam::TDataAssociationMethod;
 using mrpt::slam::TDataAssociationMetric;
 
-constexpr std::string_view kPrefix = "libslam.";
-
-/// Parameters that one of MRPT's options holds.
-struct Counterpart {
-  std::string_view parameter, option;
-};
-constexpr auto kCounterparts = std::to_array<Counterpart>({
-    {"measurement.sigma_range", "std_sensor_range"},
-    {"measurement.sigma_bearing_deg", "std_sensor_yaw_deg"},
-    {"motion.no_odometry_sigma_xy", "stds_Q_no_odo"},
-    {"motion.no_odometry_sigma_heading_deg", "stds_Q_no_odo"},
-    {"association.gate_probability", "data_assoc_IC_chi2_thres"},
-});
-
 template <typename Enum>
 void read_enum(const CConfigFileBase& source, const std::string& section, const char* key,
                int& value) {
   value = source.read_enum<Enum>(section, key, static_cast<Enum>(value));
-}
-
-/// The option of MRPT that holds a parameter, if one does.
-std::optional<std::string> option_of(std::string_view parameter) {
-  const auto* const found = std::ranges::find(kCounterparts, parameter, &Counterpart::parameter);
-  if (found == kCounterparts.end()) return std::nullopt;
-  return std::string(found->option);
-}
-
-void assign_from_ini(Parameters& parameters, const std::string& name, const std::string& value) {
-  if (const auto option = option_of(name))
-    throw ConfigError("is MRPT's option " + *option + "; set it in [RangeBearingKFSLAM]");
-  assign_parameter(parameters, name, value);
-}
-
-std::string place(const std::string& section, const std::string& key) {
-  return std::string("[").append(section).append("] ").append(key).append(": ");
-}
-
-void load_parameters(const CConfigFileBase& source, Parameters& parameters) {
-  std::vector<std::string> sections, keys;
-  source.getAllSections(sections);
-  for (const std::string& section : sections) {
-    if (!section.starts_with(kPrefix)) continue;
-    source.getAllKeys(section, keys);
-    for (const std::string& key : keys) {
-      const std::string value = mrpt::system::trim(source.read_string(section, key, ""));
-      try {
-        assign_from_ini(parameters, section.substr(kPrefix.size()) + "." + key, value);
-      } catch (const ConfigError& error) {
-        throw ConfigError(place(section, key) + error.what());
-      }
-    }
-  }
 }
 
 }  // namespace
@@ -99,7 +47,8 @@ void RangeBearingSlam2D::TOptions::loadFromConfigFile(const CConfigFileBase& sou
     stds[0] = stds[1] = source.read_float(section, "stdXY_no_odo", stds[0]);
   stds[2] = source.read_float(section, "stdPhi_no_odo_deg", RAD2DEG(stds[2]));
   source.read_vector(section, "stds_Q_no_odo", stds, stds);
-  if (stds.size() != 3) throw ConfigError(place(section, "stds_Q_no_odo") + "takes x y phi_deg");
+  if (stds.size() != 3)
+    throw ConfigError(place_in_ini(section, "stds_Q_no_odo") + "takes x y phi_deg");
   stds[2] = DEG2RAD(stds[2]);
   if (source.read_bool(section, "force_ignore_odometry", false)) parameters.input.odometry = "none";
 
@@ -113,7 +62,7 @@ void RangeBearingSlam2D::TOptions::loadFromConfigFile(const CConfigFileBase& sou
   read_enum<TDataAssociationMetric>(source, section, "data_assoc_IC_metric", data_assoc_IC_metric);
   MRPT_LOAD_CONFIG_VAR(data_assoc_IC_chi2_thres, double, source, section);
   MRPT_LOAD_CONFIG_VAR(data_assoc_IC_ml_threshold, double, source, section);
-  load_parameters(source, parameters);
+  load_parameters(source, parameters, kf_slam_option);
 }
 
 void RangeBearingSlam2D::TOptions::dumpToTextStream(std::ostream& out) const {
@@ -130,8 +79,7 @@ void RangeBearingSlam2D::TOptions::dumpToTextStream(std::ostream& out) const {
   LOADABLEOPTS_DUMP_VAR(data_assoc_IC_chi2_thres, double);
   LOADABLEOPTS_DUMP_VAR(data_assoc_IC_metric, int);
   LOADABLEOPTS_DUMP_VAR(data_assoc_IC_ml_threshold, double);
-  for (const ParameterEntry& entry : list_parameters(parameters))
-    if (!option_of(entry.name)) out << kPrefix << entry.name << " = " << entry.value << '\n';
+  dump_parameters(out, parameters, kf_slam_option);
 }
 
 Parameters RangeBearingSlam2D::TOptions::getEffectiveParameters() const {

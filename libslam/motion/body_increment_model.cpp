@@ -70,10 +70,8 @@ void BodyIncrementModel::linearize(const GaussianState& state, BlockId pose,
   step.cov_noise = rotation * cov_body * rotation.transpose();
 }
 
-Eigen::Vector3d BodyIncrementModel::sample(const Eigen::Vector3d& pose,
-                                           const Eigen::VectorXd& calibration,
-                                           const MotionAction& action,
-                                           std::mt19937_64& random) const {
+BlockVector BodyIncrementModel::sample(const BlockVector& pose, const Eigen::VectorXd& calibration,
+                                       const MotionAction& action, std::mt19937_64& random) const {
   require_values(calibration.size());
   CalibrationVector values = layout_.priors();
   for (std::size_t i = 0; i < layout_.indices().size(); ++i) {

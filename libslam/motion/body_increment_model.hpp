@@ -41,8 +41,8 @@ class BodyIncrementModel : public MotionModel {
   /// `calibration`: values in the order of `calibration()`. Noise enters where it does in the
   /// linearization and passes through the full motion.
   /// Throws std::invalid_argument on another number of values.
-  Eigen::Vector3d sample(const Eigen::Vector3d& pose, const Eigen::VectorXd& calibration,
-                         const MotionAction& action, std::mt19937_64& random) const final;
+  BlockVector sample(const BlockVector& pose, const Eigen::VectorXd& calibration,
+                     const MotionAction& action, std::mt19937_64& random) const final;
 
  protected:
   BodyIncrementModel(const OdometryNoiseParameters& noise, CalibrationLayout layout)

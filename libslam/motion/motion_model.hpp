@@ -22,17 +22,21 @@ class MotionModel {
  public:
   virtual ~MotionModel() = default;
 
+  /// The pose block that the model moves: SE2 or SE3.
+  virtual BlockSpec pose_spec() const { return {"pose", Chart::kSE2, 3, WorldRole::kPose}; }
+
   /// The parameters that are switched on, in the order the model expects their blocks.
   virtual const std::vector<CalibrationSpec>& calibration() const = 0;
 
-  /// `pose`: SE2 block; `blocks`: as `calibration()`. Fills `step` completely.
+  /// `pose`: block as `pose_spec`; `blocks`: as `calibration()`. Fills `step` completely.
   /// Throws std::invalid_argument if the action lacks the input that the model is configured for.
   virtual void linearize(const GaussianState& state, BlockId pose, const CalibrationBlocks& blocks,
                          const MotionAction& action, MotionStep& step) const = 0;
 
-  /// Draws the pose after `action` from `pose` with the calibration values given.
-  virtual Eigen::Vector3d sample(const Eigen::Vector3d& pose, const Eigen::VectorXd& calibration,
-                                 const MotionAction& action, std::mt19937_64& random) const = 0;
+  /// Draws the pose after `action` from `pose` (storage of `pose_spec`) with the calibration values
+  /// given.
+  virtual BlockVector sample(const BlockVector& pose, const Eigen::VectorXd& calibration,
+                             const MotionAction& action, std::mt19937_64& random) const = 0;
 };
 
 }  // namespace libslam

@@ -1,16 +1,30 @@
+#include <optional>
 #include <stdexcept>
 #include <string>
 
+#include <Eigen/Geometry>
+
+#include <libslam/association/appearance.hpp>
+#include <libslam/association/joint_compatibility.hpp>
 #include <libslam/association/known.hpp>
 #include <libslam/association/nearest_neighbour.hpp>
+#include <libslam/frontend/fiducials.hpp>
 #include <libslam/frontend/range_bearing_observation.hpp>
 #include <libslam/frontend/sensor_path_observation.hpp>
+#include <libslam/frontend/stereo_features.hpp>
+#include <libslam/frontend/stereo_observation.hpp>
+#include <libslam/io/map_file.hpp>
 #include <libslam/measurement/range_bearing.hpp>
 #include <libslam/measurement/sensor_displacement.hpp>
+#include <libslam/measurement/stereo_point.hpp>
 #include <libslam/motion/ackermann.hpp>
+#include <libslam/motion/body_twist.hpp>
+#include <libslam/motion/constant_twist.hpp>
 #include <libslam/motion/differential.hpp>
 #include <libslam/motion/odometry_increment.hpp>
 #include <libslam/pipeline/factory.hpp>
+#include <libslam/pipeline/policy_factory.hpp>
+#include <libslam/policy/sage_husa.hpp>
 #include <libslam/state/chi_square.hpp>
 
 namespace libslam {
@@ -26,6 +40,8 @@ constexpr std::int64_t kBeyondIdentities = std::int64_t{1} << 32;
 
 std::unique_ptr<MeasurementModel> make_measurement(const Parameters& p) {
   if (p.measurement.model == "range_bearing") return std::make_unique<RangeBearing>();
+  if (p.measurement.model == "stereo_point")
+    return std::make_unique<StereoPoint>(p.measurement.stereo.landmark_dimension);
   throw_unknown("measurement model", p.measurement.model);
 }
 
@@ -36,10 +52,24 @@ std::unique_ptr<Associator> make_associator(const Parameters& p, const Measureme
     return std::make_unique<NearestNeighbour>(
         gate, chi_square_quantile(p.association.new_landmark_probability, dof));
   };
+  const auto joint = [&] {
+    JointCompatibilityOptions options;
+    options.gate_probability = p.association.gate_probability;
+    options.new_landmark_probability = p.association.new_landmark_probability;
+    options.dimension = dof;
+    return std::make_unique<JointCompatibility>(options);
+  };
+  const double all = chi_square_quantile(1.0, dof);
   if (p.association.method == "known") return std::make_unique<KnownAssociation>(gate);
   if (p.association.method == "nearest_neighbour") return nearest();
+  if (p.association.method == "joint_compatibility") return joint();
   if (p.association.method == "known_or_nearest")
-    return std::make_unique<KnownAssociation>(chi_square_quantile(1.0, dof), nearest());
+    return std::make_unique<KnownAssociation>(all, nearest());
+  if (p.association.method == "known_or_joint")
+    return std::make_unique<KnownAssociation>(all, joint());
+  if (p.association.method == "appearance")
+    return std::make_unique<AppearanceAssociation>(gate, p.association.appearance_distance,
+                                                   p.association.appearance_ratio);
   throw_unknown("association method", p.association.method);
 }
 
@@ -53,9 +83,35 @@ std::unique_ptr<LinearizationPoint> make_linearization_point(const Parameters& p
   return std::make_unique<TruthPoint>(*truth);
 }
 
-Eigen::Matrix3d planar_covariance(double sigma_xy, double sigma_heading_deg) {
-  const Eigen::Vector3d sigma(sigma_xy, sigma_xy, sigma_heading_deg * kPi / 180.0);
+/// Of a pose error in the plane, or in space with the same sigmas for every axis.
+BlockMatrix pose_covariance(const BlockSpec& pose, double sigma_xy, double sigma_heading_deg) {
+  TangentVector sigma(tangent_dimension(pose));
+  sigma.setConstant(sigma_heading_deg * kPi / 180.0);
+  sigma.head(pose.chart == Chart::kSE3 ? 3 : 2).setConstant(sigma_xy);
   return sigma.cwiseAbs2().asDiagonal();
+}
+
+BlockVector start_pose(const BlockSpec& pose, const MapParameters& map) {
+  constexpr double kDegree = kPi / 180.0;
+  if (pose.chart == Chart::kSE2)
+    return Eigen::Vector3d(map.initial_x, map.initial_y, map.initial_heading_deg * kDegree);
+  const Eigen::Quaterniond q =
+      Eigen::AngleAxisd(map.initial_heading_deg * kDegree, Eigen::Vector3d::UnitZ()) *
+      Eigen::AngleAxisd(map.initial_pitch_deg * kDegree, Eigen::Vector3d::UnitY()) *
+      Eigen::AngleAxisd(map.initial_roll_deg * kDegree, Eigen::Vector3d::UnitX());
+  BlockVector start(storage_dimension(pose));
+  start << map.initial_x, map.initial_y, map.initial_z, q.coeffs();
+  return start;
+}
+
+std::optional<MapStart> make_map_start(const MapParameters& map) {
+  if (map.file.empty()) return std::nullopt;
+  MapStart start;
+  start.map = std::make_shared<SavedMap>(read_map_file(map.file, map.sigma));
+  start.landmarks_given = map.mode == "localize";
+  start.at_saved_pose = map.start == "saved_pose";
+  start.saved_calibration = map.calibration == "saved";
+  return start;
 }
 
 }  // namespace
@@ -63,6 +119,9 @@ Eigen::Matrix3d planar_covariance(double sigma_xy, double sigma_heading_deg) {
 std::unique_ptr<MotionModel> make_motion_model(const MotionParameters& motion,
                                                const CalibrationParameters& calibration,
                                                const InputParameters& input) {
+  if (motion.model == "body_twist") return std::make_unique<BodyTwist>(motion.twist, calibration);
+  if (motion.model == "constant_twist")
+    return std::make_unique<ConstantTwist>(motion.constant_twist);
   const OdometrySource source =
       input.odometry == "none" ? OdometrySource::kIncrements : odometry_source(input);
   if (motion.model == "odometry_increment")
@@ -82,26 +141,39 @@ EkfSlamParts make_filter_parts(const Parameters& p, const TrueState* truth) {
   } else {
     parts.measurement = make_measurement(p);
     parts.associator = make_associator(p, *parts.measurement);
+    parts.process = make_process_policy(p, *parts.measurement);
   }
+  parts.disturbance = make_disturbance_response(p.policies.disturbance, parts.motion->pose_spec());
   parts.frame = make_error_frame(p.filter.error_frame);
   parts.linearization = make_linearization_point(p, truth);
-  parts.registry =
-      LandmarkRegistry(p.association.confirm_after, p.association.prune_after,
-                       p.association.method == "known_or_nearest" ? kBeyondIdentities : 0);
+  parts.noise = make_noise_policy(p);
+  parts.registry = LandmarkRegistry(
+      p.association.confirm_after, p.association.prune_after,
+      p.association.uses_identities() && p.association.method != "known" ? kBeyondIdentities : 0);
+  const BlockSpec pose = parts.motion->pose_spec();
+  parts.map = make_map_start(p.map);
+  if (parts.map && !parts.map->at_saved_pose) parts.start = start_pose(pose, p.map);
   parts.cov_start =
-      planar_covariance(p.filter.initial_sigma_xy, p.filter.initial_sigma_heading_deg);
+      pose_covariance(pose, p.filter.initial_sigma_xy, p.filter.initial_sigma_heading_deg);
   parts.cov_no_odometry =
-      planar_covariance(p.motion.no_odometry_sigma_xy, p.motion.no_odometry_sigma_heading_deg);
+      pose_covariance(pose, p.motion.no_odometry_sigma_xy, p.motion.no_odometry_sigma_heading_deg);
   return parts;
 }
 
 std::unique_ptr<Frontend> make_frontend(const Parameters& p) {
   if (p.frontend.source == "range_bearing")
-    return std::make_unique<RangeBearingObservation>(p.frontend, p.measurement,
-                                                     p.input.sensor_label,
-                                                     p.association.method != "nearest_neighbour");
+    return std::make_unique<RangeBearingObservation>(
+        p.frontend, p.measurement, p.input.sensor_label, p.association.uses_identities());
   if (p.frontend.source == "sensor_path")
     return std::make_unique<SensorPathObservation>(p.measurement, p.input.sensor_label);
+  if (p.frontend.source == "stereo_points")
+    return std::make_unique<StereoObservation>(
+        p.frontend, p.measurement.stereo, p.input.sensor_label, p.association.uses_identities());
+  if (p.frontend.source == "stereo_images")
+    return std::make_unique<StereoFeatures>(p.frontend, p.input.sensor_label,
+                                            p.association.uses_identities());
+  if (p.frontend.source == "fiducials")
+    return std::make_unique<Fiducials>(p.frontend, p.input.sensor_label);
   throw_unknown("front-end", p.frontend.source);
 }
 

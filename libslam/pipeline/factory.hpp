@@ -16,8 +16,9 @@ std::unique_ptr<MotionModel> make_motion_model(const MotionParameters& motion,
                                                const InputParameters& input);
 
 /// The parts of the filter that `parameters` describe. `truth` is what `filter.linearization:
-/// at_truth` asks for, and must outlive the filter. Throws std::invalid_argument on a value that
-/// validation (config/validation.hpp) would have refused.
+/// at_truth` asks for, and must outlive the filter. Reads the map that `map.file` names. Throws
+/// InputError if it cannot, std::invalid_argument on a value that validation
+/// (config/validation.hpp) would have refused.
 EkfSlamParts make_filter_parts(const Parameters& parameters, const TrueState* truth = nullptr);
 
 std::unique_ptr<Frontend> make_frontend(const Parameters& parameters);

@@ -79,7 +79,7 @@ mrpt::obs::CSensoryFrame::Ptr usable_frame(const mrpt::obs::CSensoryFrame::Ptr& 
   std::erase_if(copy->sensedData, [&](const auto& m) {
     return m.range > parameters.frontend.max_range || m.range < parameters.frontend.min_range;
   });
-  if (parameters.association.method == "nearest_neighbour")
+  if (!parameters.association.uses_identities())
     for (auto& measured : copy->sensedData) measured.landmarkID = -1;
   if (copy->sensedData.empty()) return nullptr;
   auto out = mrpt::obs::CSensoryFrame::Create();

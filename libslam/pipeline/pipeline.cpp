@@ -1,4 +1,5 @@
 #include <optional>
+#include <utility>
 
 #include <libslam/pipeline/factory.hpp>
 #include <libslam/pipeline/pipeline.hpp>
@@ -12,25 +13,62 @@ InputParameters reader_input(InputParameters input) {
   return input;
 }
 
+EkfSlamParts make_parts(const Parameters& parameters, const TrueState* truth, FilterStart start) {
+  EkfSlamParts parts = make_filter_parts(parameters, truth);
+  if (start.map) parts.map = std::move(start.map);
+  if (start.pose.size() > 0) {
+    parts.start = start.pose;
+    parts.cov_start = start.cov;
+  }
+  return parts;
+}
+
+void fill_pose(const GaussianState& state, BlockId pose, StepRecord& record) {
+  const auto x = state.estimate(pose);
+  if (state.spec(pose).chart == Chart::kSE2) {
+    record.pose = x;
+    record.cov = state.covariance_of(pose);
+    return;
+  }
+  record.spatial.emplace();
+  record.spatial->pose = {x.head<3>(), Eigen::Quaterniond(x[6], x[3], x[4], x[5])};
+  record.spatial->cov = state.covariance_of(pose);
+  record.pose = shadow_of(record.spatial->pose);
+  record.cov = shadow_covariance(*record.spatial);
+}
+
 }  // namespace
 
-Pipeline::Pipeline(const Parameters& parameters, const TrueState* truth)
+Pipeline::Pipeline(const Parameters& parameters, const TrueState* truth, FilterStart start)
     : odometry_(reader_input(parameters.input)),
       ignore_odometry_(parameters.input.odometry == "none"),
+      keeps_velocity_(parameters.motion.model == "constant_twist"),
       frontend_(make_frontend(parameters)),
       schedule_(parameters.policies.update_period_s, parameters.policies.update_every_n),
-      filter_(make_filter_parts(parameters, truth)) {}
+      filter_(make_parts(parameters, truth, std::move(start))) {}
 
 StepRecord Pipeline::process(const LogStep& step) {
+  const bool moves = step.action || step.twist || keeps_velocity_;
   std::optional<MotionAction> action;
-  if (step.action && !ignore_odometry_) action = odometry_.read(step);
-  if (step.action) propagate(action ? &*action : nullptr);
+  if (keeps_velocity_)
+    action = keep_velocity(step.time);
+  else if (moves && !ignore_odometry_)
+    action = odometry_.read(step);
+  if (moves) propagate(action ? &*action : nullptr);
   return update(step);
 }
 
 StepRecord Pipeline::process_frame(const LogStep& step) {
   propagate(nullptr);
   return update(step);
+}
+
+MotionAction Pipeline::keep_velocity(double time) {
+  MotionAction action;
+  action.time = time;
+  action.dt = time_ ? time - *time_ : 0.0;
+  time_ = time;
+  return action;
 }
 
 void Pipeline::propagate(const MotionAction* action) {
@@ -52,18 +90,24 @@ StepRecord Pipeline::update(const LogStep& step) {
         last_update_ += outcome;
       }
   }
-  StepRecord record;
+  StepRecord record = estimate();
   record.index = step.index;
   record.time = step.time;
-  record.pose = filter_.state().estimate(filter_.pose());
-  record.cov = filter_.state().covariance_of(filter_.pose());
   record.nis = last_update_.nis;
   record.nis_dof = last_update_.nis_dof;
   record.accepted = last_update_.accepted;
   record.gated = last_update_.gated;
   record.ambiguous = last_update_.ambiguous;
   record.new_landmarks = last_update_.new_landmarks;
+  record.event = last_update_.event;
+  return record;
+}
+
+StepRecord Pipeline::estimate() const {
+  StepRecord record;
+  fill_pose(filter_.state(), filter_.pose(), record);
   record.calibration = filter_.calibration();
+  record.noise = filter_.noise();
   return record;
 }
 

@@ -2,6 +2,7 @@
 // One step of a log through all parts: odometry -> filter <- association <- features.
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -25,11 +26,19 @@ class FilterObserver {
   virtual void on_update(std::span<const Feature> features, const UpdateOutcome& outcome) = 0;
 };
 
+/// Where a filter starts, if not where the parameters say.
+struct FilterStart {
+  std::optional<MapStart> map;  ///< a map in memory instead of map.file
+  BlockVector pose;  ///< storage of the motion model's pose; empty: as the parameters say
+  BlockMatrix cov;   ///< of its error, tangent coordinates; goes with `pose`
+};
+
 class Pipeline {
  public:
-  /// `parameters` must be valid (config/validation.hpp); throws std::invalid_argument otherwise.
-  /// `truth`: see make_filter_parts.
-  explicit Pipeline(const Parameters& parameters, const TrueState* truth = nullptr);
+  /// `parameters` must be valid (config/validation.hpp); throws std::invalid_argument otherwise,
+  /// and if the map to start in does not fit. `truth`: see make_filter_parts.
+  explicit Pipeline(const Parameters& parameters, const TrueState* truth = nullptr,
+                    FilterStart start = {});
 
   /// Moves by the odometry of the step and updates with its frame if one is due. Throws
   /// UnusableOdometry (frontend/odometry.hpp) before anything has changed, and
@@ -37,6 +46,11 @@ class Pipeline {
   StepRecord process(const LogStep& step);
   /// The same without the odometry of the step: for steps whose odometry is unusable.
   StepRecord process_frame(const LogStep& step);
+
+  /// Localization from now on, or SLAM: EkfSlam::give_landmarks.
+  void give_landmarks(bool given) { filter_.give_landmarks(given); }
+  /// The pose and the calibration as they are now, without anything about an update.
+  StepRecord estimate() const;
 
   /// `observer` must outlive its use here; null: none.
   void observe(FilterObserver* observer) { observer_ = observer; }
@@ -49,15 +63,18 @@ class Pipeline {
 
  private:
   void propagate(const MotionAction* action);
+  /// The motion of a body that keeps its velocity until `time`.
+  MotionAction keep_velocity(double time);
   StepRecord update(const LogStep& step);
 
   OdometryReader odometry_;
-  bool ignore_odometry_;
+  bool ignore_odometry_, keeps_velocity_;
   std::unique_ptr<Frontend> frontend_;
   UpdateSchedule schedule_;
   EkfSlam filter_;
   FilterObserver* observer_ = nullptr;
   UpdateOutcome last_update_;
+  std::optional<double> time_;  // of the step before, for motion without odometry
   std::vector<FeatureBatch> batches_;
 };
 

@@ -12,6 +12,7 @@
 #include <libslam/io/exporters/scene_3d.hpp>
 #include <libslam/io/exporters/simple_map.hpp>
 #include <libslam/io/input_error.hpp>
+#include <libslam/io/map_file.hpp>
 #include <libslam/io/rawlog_player.hpp>
 #include <libslam/pipeline/pipeline.hpp>
 #include <libslam/pipeline/run.hpp>
@@ -58,6 +59,14 @@ PlayerOptions player_options(const RunRequest& request) {
   return options;
 }
 
+/// Found out before the run rather than after it.
+void require_folder_of_map(const std::filesystem::path& file) {
+  if (file.empty()) return;
+  const auto folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
+  if (!std::filesystem::is_directory(folder))
+    throw std::runtime_error("cannot write " + file.string() + ": no directory " + folder.string());
+}
+
 class Run {
  public:
   explicit Run(const RunRequest& request)
@@ -88,8 +97,11 @@ class Run {
   }
 
   RunSummary finish() {
+    save_map();
     const LandmarkMap map = finite_landmarks();
-    const bool known = request_.parameters.association.method != "nearest_neighbour";
+    // Points of images are numbered as they come.
+    const bool known = request_.parameters.association.uses_identities() &&
+                       request_.parameters.frontend.source != "stereo_images";
     RunSummary summary =
         recorder_.finish(summarize(), map, request_.truth,
                          known ? LandmarkIdentity::known : LandmarkIdentity::unknown);
@@ -99,6 +111,17 @@ class Run {
   }
 
  private:
+  void save_map() {
+    if (request_.save_map.empty()) return;
+    try {
+      write_map_file(request_.save_map, pipeline_.filter().saved_map());
+    } catch (const std::invalid_argument& unsound) {
+      warnings_.push_back(request_.save_map.string() + " not written: " + unsound.what());
+    } catch (const std::runtime_error&) {
+      if (!failure_) fail(2, "failed");
+    }
+  }
+
   /// A diverged filter may hold landmarks that are no numbers; the others are still worth saving.
   LandmarkMap finite_landmarks() const {
     LandmarkMap map;
@@ -171,16 +194,29 @@ class Run {
     summary.threads = request_.threads;
     summary.exit_code = exit_code_;
     summary.status = status_;
-    summary.input = {request_.rawlog,    input.entries,    input.actions,
-                     input.observations, input.duration_s, input.skipped + unusable,
-                     input.repaired,     input.warnings};
+    summary.input = {request_.rawlog,
+                     input.entries,
+                     input.actions,
+                     input.observations,
+                     input.duration_s,
+                     input.skipped + unusable,
+                     input.repaired,
+                     input.warnings,
+                     {},
+                     {}};
+    if (const std::string& map = request_.parameters.map.file; !map.empty()) {
+      summary.input.map_file = map;
+      summary.input.map_sha256 = sha256_of_file(map);
+    }
     auto& warnings = summary.input.warnings;
     warnings.insert(warnings.end(), warnings_.begin(), warnings_.end());
     const auto about_odometry = pipeline_.odometry().warnings();
     warnings.insert(warnings.end(), about_odometry.begin(), about_odometry.end());
+    const auto about_features = pipeline_.frontend().warnings();
+    warnings.insert(warnings.end(), about_features.begin(), about_features.end());
     if (pipeline_.frontend().unusable() > 0)
       warnings.push_back(std::to_string(pipeline_.frontend().unusable()) +
-                         " measurements left out: not finite or range not positive");
+                         " measurements left out as unusable");
     warn_of_idle_schedule(warnings);
     warn_of_unused_sightings(warnings);
     fill_timing(summary);
@@ -246,6 +282,7 @@ class Run {
 }  // namespace
 
 RunSummary run_rawlog(const RunRequest& request) {
+  require_folder_of_map(request.save_map);
   Run run(request);
   run.play();
   return run.finish();

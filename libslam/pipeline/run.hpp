@@ -21,7 +21,8 @@ struct RunRequest {
   Parameters parameters;  ///< valid (config/validation.hpp)
   GroundTruth truth;      ///< for the evaluation alone
   std::filesystem::path directory;
-  bool force = false;  ///< replace the files of an earlier run
+  std::filesystem::path save_map;  ///< file for the map at the end (io/map_file.hpp); empty: none
+  bool force = false;              ///< replace the files of an earlier run
   std::uint64_t seed = 0;
   int threads = 1;
   Pacing pacing;
@@ -32,10 +33,11 @@ struct RunRequest {
 
 /// Runs to the end of the log, to a stop, or until the filter diverges; whatever was computed is in
 /// the directory when this returns. The exit code of the contract is in the summary: 0 done, 5 part
-/// of the input was unusable, 6 diverged, 7 stopped. Throws InputError if the log cannot be opened
-/// or its input policy is strict and it has a defect, std::invalid_argument if the log lacks a
-/// field that the configuration asks for, std::runtime_error if the directory cannot be written;
-/// what was computed before is saved then, too.
+/// of the input was unusable, 6 diverged, 7 stopped. Throws InputError if log or map cannot be
+/// opened or its input policy is strict and it has a defect, std::invalid_argument if the log lacks
+/// a field that the configuration asks for or the map does not fit the configuration,
+/// std::runtime_error if the directory or the map cannot be written; what was computed before is
+/// saved then, too. A map that is not sound is not saved, and a warning says so.
 RunSummary run_rawlog(const RunRequest& request);
 
 }  // namespace libslam

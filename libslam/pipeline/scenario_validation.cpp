@@ -68,6 +68,9 @@ void check_sensors(const Scenario& s, Conflicts& conflicts) {
       (!(s.range_bearing.sigma_range > 0.0) || !(s.range_bearing.sigma_bearing_deg > 0.0)))
     conflicts.push_back({{"range_bearing.sigma_range", "range_bearing.sigma_bearing_deg"},
                          "a log without sensor noise is one that states none; take a small one"});
+  if (s.stereo_images.enabled && s.stereo_images.camera_height >= s.stereo_images.wall_height)
+    conflicts.push_back({{"stereo_images.camera_height", "stereo_images.wall_height"},
+                         "the cameras must be below the ceiling"});
   if (s.faults.noise_step.enabled && s.faults.noise_step.end_s <= s.faults.noise_step.begin_s)
     conflicts.push_back({{"faults.noise_step.end_s", "faults.noise_step.begin_s"},
                          "the step ends before it begins"});

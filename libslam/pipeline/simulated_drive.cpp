@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <exception>
 #include <string>
 
@@ -8,6 +9,7 @@
 #include <libslam/pipeline/simulated_drive.hpp>
 #include <libslam/pipeline/simulation.hpp>
 #include <libslam/result/atomic_file.hpp>
+#include <libslam/simulation/tag_plate.hpp>
 
 namespace libslam {
 
@@ -76,6 +78,17 @@ nlohmann::ordered_json notes_of(Scenario scenario, const DriveSummary& summary) 
   return notes;
 }
 
+/// Tags have corners, which are landmarks too. A world that was read back knows them already.
+std::vector<TrueLandmark> true_landmarks(const Scenario& scenario, const World& world) {
+  std::vector<TrueLandmark> landmarks = world.landmarks;
+  if (!scenario.stereo_images.enabled) return landmarks;
+  for (const TrueLandmark& corner : tag_corners(world, scenario.stereo_images.tag_size)) {
+    const auto known = std::ranges::find(landmarks, corner.id, &TrueLandmark::id);
+    if (known == landmarks.end()) landmarks.push_back(corner);
+  }
+  return landmarks;
+}
+
 }  // namespace
 
 DriveSummary simulate_drive(const DriveRequest& request) {
@@ -109,7 +122,8 @@ DriveSummary simulate_drive(const DriveRequest& request) {
   summary.steps = writer.steps();
   summary.observations = writer.observations();
   const Scenario portable = make_portable(request.scenario, simulator->world(), request.rawlog);
-  writer.finish(simulator->landmarks(), simulator->calibration(), notes_of(portable, summary));
+  writer.finish(true_landmarks(portable, simulator->world()), simulator->calibration(),
+                notes_of(portable, summary));
   Scenario effective = portable;
   replace_file(beside(request.rawlog, ".scenario.yaml"), to_yaml(ParameterTable(effective)));
   replace_file(beside(request.rawlog, ".filter.yaml"), to_yaml(nominal_filter(effective)));

@@ -1,3 +1,6 @@
+#include <stdexcept>
+#include <string>
+
 #include <Eigen/Cholesky>
 
 #include <libslam/policy/excitation.hpp>
@@ -17,6 +20,30 @@ void Excitation::observe(const Eigen::Ref<const Eigen::Matrix3Xd>& jacobian,
   noise_ += noise;
   elapsed_ += dt > 0.0 ? dt : kWindow;
   if (elapsed_ >= kWindow) close_window();
+}
+
+std::vector<double> Excitation::memory() const {
+  std::vector<double> memory(noise_.data(), noise_.data() + noise_.size());
+  memory.push_back(elapsed_);
+  memory.insert(memory.end(), jacobian_.data(), jacobian_.data() + jacobian_.size());
+  memory.insert(memory.end(), mean_snr_.data(), mean_snr_.data() + mean_snr_.size());
+  for (const bool flag : excited_) memory.push_back(flag ? 1.0 : 0.0);
+  for (const bool flag : ever_excited_) memory.push_back(flag ? 1.0 : 0.0);
+  return memory;
+}
+
+void Excitation::remember(std::span<const double> memory) {
+  constexpr std::size_t kShared = 10, kEach = 6;  // noise and elapsed time; the rest per parameter
+  if (memory.size() != kShared + kEach * nominal_.size())
+    throw std::invalid_argument("the memory of an excitation has " + std::to_string(memory.size()) +
+                                " numbers for " + std::to_string(nominal_.size()) + " parameters");
+  auto number = memory.begin();
+  for (double& value : noise_.reshaped()) value = *number++;
+  elapsed_ = *number++;
+  for (double& value : jacobian_.reshaped()) value = *number++;
+  for (double& value : mean_snr_) value = *number++;
+  for (auto&& flag : excited_) flag = *number++ != 0.0;
+  for (auto&& flag : ever_excited_) flag = *number++ != 0.0;
 }
 
 void Excitation::close_window() {

@@ -11,6 +11,7 @@
 // the parameter (Schmidt-Kalman) instead of estimating it: its uncertainty counts, its estimate and
 // covariance stay.
 
+#include <span>
 #include <vector>
 
 #include <Eigen/Core>
@@ -34,6 +35,12 @@ class Excitation {
   bool excited(std::size_t parameter) const { return excited_[parameter]; }
   /// Excited at any time so far.
   bool ever_excited(std::size_t parameter) const { return ever_excited_[parameter]; }
+
+  /// All that has been observed, as numbers for a file.
+  std::vector<double> memory() const;
+  /// Goes on from `memory` of a monitor of as many parameters. Throws std::invalid_argument if it
+  /// has another length.
+  void remember(std::span<const double> memory);
 
  private:
   void close_window();

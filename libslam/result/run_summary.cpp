@@ -76,6 +76,10 @@ void visit_keys(const auto& v, auto& summary) {
     s("skipped", summary.input.skipped);
     s("repaired", summary.input.repaired);
     s("warnings", summary.input.warnings);
+    s.section("map", [&](const auto& map) {
+      map("file", summary.input.map_file);
+      map("sha256", summary.input.map_sha256);
+    });
   });
 }
 

@@ -35,6 +35,7 @@ struct RunSummary {
     double duration_s = 0.0;
     std::int64_t skipped = 0, repaired = 0;
     std::vector<std::string> warnings;
+    std::optional<std::string> map_file, map_sha256;  ///< of the map that the run started in
   };
   struct Result {
     std::optional<Eigen::Vector3d> pose;  ///< last pose: x [m], y [m], phi [rad]

@@ -25,6 +25,7 @@ enum class RandomPurpose : std::uint32_t {
   kStereoOutlier,
   kSlip,
   kMovingLandmarks,
+  kStereoImages,
 };
 
 /// A generator for the distributions of <random>, of one purpose, step and element.

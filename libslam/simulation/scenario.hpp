@@ -155,6 +155,7 @@ struct Scenario {
   BeaconSensorParameters beacons;
   LaserSensorParameters laser;
   StereoSensorParameters stereo;
+  StereoImagesParameters stereo_images;
   FaultParameters faults;
   LogParameters log;
 
@@ -168,6 +169,7 @@ struct Scenario {
     v.section("beacons", beacons);
     v.section("laser", laser);
     v.section("stereo", stereo);
+    v.section("stereo_images", stereo_images);
     v.section("faults", faults);
     v.section("log", log);
   }

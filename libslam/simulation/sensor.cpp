@@ -1,6 +1,7 @@
 #include <libslam/simulation/beacon_sensor.hpp>
 #include <libslam/simulation/laser_sensor.hpp>
 #include <libslam/simulation/range_bearing_sensor.hpp>
+#include <libslam/simulation/stereo_image_sensor.hpp>
 #include <libslam/simulation/stereo_sensor.hpp>
 
 namespace libslam {
@@ -13,6 +14,8 @@ std::vector<std::unique_ptr<SimulatedSensor>> make_sensors(const Scenario& scena
   if (scenario.beacons.enabled) sensors.push_back(std::make_unique<BeaconSensor>(scenario, seed));
   if (scenario.laser.enabled) sensors.push_back(std::make_unique<LaserSensor>(scenario, seed));
   if (scenario.stereo.enabled) sensors.push_back(std::make_unique<StereoSensor>(scenario, seed));
+  if (scenario.stereo_images.enabled)
+    sensors.push_back(std::make_unique<StereoImageSensor>(scenario, seed));
   return sensors;
 }
 

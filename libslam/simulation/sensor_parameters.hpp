@@ -98,4 +98,33 @@ struct StereoSensorParameters {
   }
 };
 
+/// Section `stereo_images`: a rendered pair of gray images of floor, walls, ceiling and tags.
+struct StereoImagesParameters {
+  bool enabled = false;
+  double focal_length_px = 260.0;
+  int width = 320, height = 240;
+  double baseline = 0.12;
+  double camera_height = 1.0;
+  double wall_height = 2.5;
+  double tag_size = 0.4;
+  double sigma_gray = 2.0;
+  SensorPoseParameters pose;
+
+  void describe(auto& v) {
+    v.value("enabled", enabled, {"", "A stereo camera takes images; landmarks carry tags."});
+    v.value("focal_length_px", focal_length_px, {"px", "Focal length.", 1});
+    v.value("width", width, {"px", "Width of the images; the axis meets their centre.", 16, 4096});
+    v.value("height", height, {"px", "Height of the images.", 16, 4096});
+    v.value("baseline", baseline, {"m", "Right camera to the right of the left one.", 1e-6});
+    v.value("camera_height", camera_height,
+            {"m", "Height of the cameras above the floor, below that of the walls.", 1e-3});
+    v.value("wall_height", wall_height,
+            {"m", "Height of walls and ceiling; without walls the sky is open.", 1e-3});
+    v.value("tag_size", tag_size,
+            {"m", "Side of the black border of the tags (tag36h11) at landmarks 0 to 586.", 1e-3});
+    v.value("sigma_gray", sigma_gray, {"1", "Standard deviation of a gray value of 255.", 0, 255});
+    v.section("pose", pose);
+  }
+};
+
 }  // namespace libslam

@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 
 #include <libslam/state/block.hpp>
+#include <libslam/state/so3.hpp>
 
 namespace libslam {
 
@@ -12,21 +13,6 @@ namespace {
 
 Eigen::Quaterniond rotation_of(const VectorRef& pose3d) {
   return {pose3d[6], pose3d[3], pose3d[4], pose3d[5]};
-}
-
-Eigen::Quaterniond exponential(const Eigen::Vector3d& theta) {
-  const double angle = theta.norm();
-  const double half_sinc =
-      angle < 1e-8 ? 0.5 - angle * angle / 48.0 : std::sin(0.5 * angle) / angle;
-  const Eigen::Vector3d v = half_sinc * theta;
-  return {std::cos(0.5 * angle), v.x(), v.y(), v.z()};
-}
-
-Eigen::Vector3d logarithm(Eigen::Quaterniond q) {
-  if (q.w() < 0.0) q.coeffs() = -q.coeffs();
-  const double sine = q.vec().norm();
-  if (sine < 1e-9) return 2.0 * q.vec();
-  return 2.0 * std::atan2(sine, q.w()) / sine * q.vec();
 }
 
 }  // namespace
@@ -69,7 +55,7 @@ void boxplus(const BlockSpec& spec, Eigen::Ref<Eigen::VectorXd> x, const VectorR
       return;
     case Chart::kSE3:
       x.head<3>() += d.head<3>();
-      x.tail<4>() = (exponential(d.tail<3>()) * rotation_of(x)).normalized().coeffs();
+      x.tail<4>() = (so3_exp(d.tail<3>()) * rotation_of(x)).normalized().coeffs();
       return;
   }
 }
@@ -90,7 +76,7 @@ TangentVector boxminus(const BlockSpec& spec, const VectorRef& a, const VectorRe
     case Chart::kSE3:
       d.resize(6);
       d.head<3>() = a.head<3>() - b.head<3>();
-      d.tail<3>() = logarithm(rotation_of(a) * rotation_of(b).conjugate());
+      d.tail<3>() = so3_log(rotation_of(a) * rotation_of(b).conjugate());
       break;
   }
   return d;

@@ -14,6 +14,7 @@ struct CalibrationSpec {
   double prior_mean = 1.0;
   double prior_sigma = 0.0;  ///< standard deviation of the prior, > 0
   double random_walk = 0.0;  ///< standard deviation per sqrt(second)
+  bool additive = false;     ///< an offset of an input (a bias): every motion shows it
 };
 
 /// The calibration blocks of a model inside a state, in the order of its `calibration()`.

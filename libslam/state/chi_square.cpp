@@ -23,4 +23,10 @@ double chi_square_probability(double x, int dof) {
   return x > 0.0 ? boost::math::cdf(boost::math::chi_squared(dof), x) : 0.0;
 }
 
+double gated_covariance(double probability, int dof) {
+  const double gate = chi_square_quantile(probability, dof);
+  if (probability <= 0.0) throw std::invalid_argument("a gate of probability 0 lets nothing pass");
+  return std::isinf(gate) ? 1.0 : chi_square_probability(gate, dof + 2) / probability;
+}
+
 }  // namespace libslam

@@ -46,6 +46,9 @@ class CovarianceStore {
   /// Makes room for `dimension` coordinates so that growing up to it does not allocate.
   virtual void reserve(Eigen::Index dimension) = 0;
 
+  /// P becomes `cov`, a full symmetric matrix of the dimension of the store; what a correction has
+  /// left behind so far is void.
+  virtual void assign(const MatrixRef& cov) = 0;
   /// Rows and columns [offset, offset + d) become those of sum_i J_i x_i + w, w ~ N(0, cov_noise),
   /// independent of the state. The rows that change may be among the columns of J.
   virtual void propagate(Eigen::Index offset, std::span<const PlacedJacobian> wrt,

@@ -78,6 +78,15 @@ void DenseCovariance::gather(std::span<const PlacedJacobian> wrt, Index rows, In
   for (const PlacedJacobian& part : wrt) gather(part, first_column);
 }
 
+void DenseCovariance::assign(const MatrixRef& cov) {
+  if (cov.rows() != n_ || cov.cols() != n_)
+    throw_dimension("assign", "matrix is " + std::to_string(cov.rows()) + " x " +
+                                  std::to_string(cov.cols()) + " for dimension " +
+                                  std::to_string(n_));
+  observed_ = 0;
+  p_.topLeftCorner(n_, n_).triangularView<Eigen::Lower>() = cov;
+}
+
 void DenseCovariance::propagate(Index offset, std::span<const PlacedJacobian> wrt,
                                 const BlockMatrix& cov_noise) {
   const Index d = cov_noise.rows();
@@ -233,6 +242,28 @@ Index DenseCovariance::append(const ChartChange& change) {
   return m + 2 * d;
 }
 
+bool DenseCovariance::mostly_considered(const ChartChange& change) {
+  if (2 * static_cast<Index>(considered_.size()) <= n_) return false;
+  learns_.assign(static_cast<std::size_t>(n_), true);
+  for (const Index i : considered_) {
+    learns_[static_cast<std::size_t>(i)] = false;
+    if (change.u.cols() > 0 && !change.u.row(i).isZero(0.0)) return false;
+  }
+  return true;
+}
+
+void DenseCovariance::subtract_learning(const Eigen::MatrixXd& right, Index columns) {
+  if (product_.size() < p_.rows()) product_.resize(p_.rows());
+  for (Index j = 0; j < n_; ++j) {
+    if (!learns_[static_cast<std::size_t>(j)]) continue;
+    product_.head(n_).noalias() =
+        gain_.topLeftCorner(n_, columns) * right.row(j).head(columns).transpose();
+    for (Index i = 0; i < j; ++i)
+      if (!learns_[static_cast<std::size_t>(i)]) p_(j, i) -= product_[i];
+    p_.col(j).segment(j, n_ - j) -= product_.segment(j, n_ - j);
+  }
+}
+
 void DenseCovariance::correct(const ChartChange& change) {
   const bool moves = change.u.cols() > 0;
   if (observed_ == 0) {
@@ -241,6 +272,11 @@ void DenseCovariance::correct(const ChartChange& change) {
   }
   const Index columns = moves ? append(change) : observed_;
   const Eigen::MatrixXd& right = moves ? right_ : gain_;
+  if (observed_ > 0 && mostly_considered(change)) {
+    subtract_learning(right, columns);
+    observed_ = 0;
+    return;
+  }
   kept_.clear();
   for (const Index i : considered_)
     for (const Index j : considered_) kept_.push_back(at(i, j));

@@ -13,13 +13,15 @@ namespace libslam {
 
 /// Symmetry holds by construction, because the upper triangle does not exist. A correction costs
 /// n^2 (m + 2d) / 2 multiply-adds in one pass over P (symmetric_kernel.hpp), m rows observed and d
-/// columns of the change of chart; propagation touches only the rows of the block that moves. Grows
+/// columns of the change of chart; where most coordinates are considered, as in localization, n (m
+/// + 2d) for each of the others. Propagation touches only the rows of the block that moves. Grows
 /// by doubling; within the capacity nothing allocates.
 class DenseCovariance final : public CovarianceStore {
  public:
   std::unique_ptr<CovarianceStore> clone() const override;
   Eigen::Index dimension() const override { return n_; }
   void reserve(Eigen::Index dimension) override;
+  void assign(const MatrixRef& cov) override;
   void propagate(Eigen::Index offset, std::span<const PlacedJacobian> wrt,
                  const BlockMatrix& cov_noise) override;
   void add_noise(Eigen::Index offset, const BlockMatrix& cov_noise) override;
@@ -45,6 +47,10 @@ class DenseCovariance final : public CovarianceStore {
   /// Appends the factors of T P' T^T - P' to those of P' = P - W W^T, so that P -= left right^T is
   /// both; returns the number of columns.
   Eigen::Index append(const ChartChange& change);
+  /// True where most coordinates are considered and stay in place; fills `learns_`.
+  bool mostly_considered(const ChartChange& change);
+  /// P -= left right^T without the covariance of the considered coordinates with each other.
+  void subtract_learning(const Eigen::MatrixXd& right, Eigen::Index columns);
   void reserve_gain(Eigen::Index columns);
   void require_inside(Eigen::Index offset, Eigen::Index size, const char* operation) const;
 
@@ -52,6 +58,8 @@ class DenseCovariance final : public CovarianceStore {
   // Workspace, padded for the kernels: W and what follows it as left and right factors.
   Eigen::MatrixXd gain_, right_;
   std::vector<Eigen::Index> considered_;
+  std::vector<bool> learns_;  // by coordinate: not considered
+  Eigen::VectorXd product_;
   std::vector<double> kept_;  // covariance of the considered coordinates during a correction
   Eigen::Index n_ = 0;
   Eigen::Index observed_ = 0;  // columns of W that wait for `correct`

@@ -3,6 +3,7 @@
 #include <string>
 
 #include <libslam/state/error_frame.hpp>
+#include <libslam/state/so3.hpp>
 
 namespace libslam {
 
@@ -49,23 +50,37 @@ ChartChange StandardFrame::retract(GaussianState& state, BlockId, const VectorRe
 }
 
 void RightInvariantFrame::require_supported(const BlockSpec& spec) const {
-  const bool planar_point =
-      spec.role == WorldRole::kPoint && spec.chart == Chart::kVector && spec.size == 2;
-  const bool planar_pose = spec.role == WorldRole::kPose && spec.chart == Chart::kSE2;
-  if (spec.role == WorldRole::kNone || planar_point || planar_pose) return;
+  const bool point = spec.role == WorldRole::kPoint && spec.chart == Chart::kVector &&
+                     (spec.size == 2 || spec.size == 3);
+  const bool pose =
+      spec.role == WorldRole::kPose && (spec.chart == Chart::kSE2 || spec.chart == Chart::kSE3);
+  if (spec.role == WorldRole::kNone || point || pose) return;
   throw std::invalid_argument("block '" + spec.name +
-                              "': the right-invariant error frame is derived for SE(2) poses and "
-                              "planar points only");
+                              "': the right-invariant error frame is derived for SE(2) and SE(3) "
+                              "poses and for points only");
 }
 
 ChartChange RightInvariantFrame::retract(GaussianState& state, BlockId pose,
                                          const VectorRef& delta) {
   require_length(state, delta);
+  return state.spec(pose).chart == Chart::kSE3 ? retract_spatial(state, pose, delta)
+                                               : retract_planar(state, pose, delta);
+}
+
+Eigen::Map<Eigen::MatrixXd> RightInvariantFrame::cleared(Eigen::Index dimension,
+                                                         Eigen::Index columns) {
+  if (moved_.size() < dimension * columns) moved_.resize(2 * dimension * columns);
+  Eigen::Map<Eigen::MatrixXd> u(moved_.data(), dimension, columns);
+  u.setZero();
+  return u;
+}
+
+ChartChange RightInvariantFrame::retract_planar(GaussianState& state, BlockId pose,
+                                                const VectorRef& delta) {
   const Eigen::Index heading = state.offset(pose) + 2;
   const double turn = delta[heading];
   const PlanarExponential exponential(turn);
-  if (moved_.size() < state.dimension()) moved_.resize(2 * state.dimension());
-  moved_.head(state.dimension()).setZero();
+  auto u = cleared(state.dimension(), 1);
   for (const BlockId id : state.blocks()) {
     GaussianState::MutableBlock block = state.mutable_block(id);
     const WorldRole role = block.spec.role;
@@ -74,14 +89,45 @@ ChartChange RightInvariantFrame::retract(GaussianState& state, BlockId pose,
       continue;
     }
     auto& x = block.estimate;
+    // xi = -J x turn is the turn about the origin taken back: what has no correction stays,
+    // exactly.
+    if (role == WorldRole::kPoint && delta.segment<2>(block.offset).isZero(0.0)) continue;
     const Eigen::Vector2d before = x.head<2>();
     const Eigen::Vector2d xi = delta.segment<2>(block.offset) - rotated_90(before) * turn;
     const Eigen::Vector2d after = exponential(before, xi);
     x.head<2>() = after;
-    if (role == WorldRole::kPose) x[2] = wrap_angle(x[2] + delta[block.offset + 2]);
-    moved_.segment<2>(block.offset) = rotated_90(after - before);
+    if (block.size == 3) x[2] += delta[block.offset + 2];
+    if (role == WorldRole::kPose) x[2] = wrap_angle(x[2]);
+    u.col(0).segment<2>(block.offset) = rotated_90(after - before);
   }
   return {heading, {moved_.data(), state.dimension(), 1}};
+}
+
+ChartChange RightInvariantFrame::retract_spatial(GaussianState& state, BlockId pose,
+                                                 const VectorRef& delta) {
+  const Eigen::Index first = state.offset(pose) + 3;
+  const Eigen::Vector3d theta = delta.segment<3>(first);
+  const Eigen::Matrix3d R = so3_exp(theta).toRotationMatrix(), V = so3_left_jacobian(theta);
+  auto u = cleared(state.dimension(), 3);
+  for (const BlockId id : state.blocks()) {
+    GaussianState::MutableBlock block = state.mutable_block(id);
+    const WorldRole role = block.spec.role;
+    if (role == WorldRole::kNone) {
+      add_to_block(block, delta);
+      continue;
+    }
+    if (block.spec.chart == Chart::kSE2 || block.size < 3)
+      throw std::invalid_argument("block '" + block.spec.name +
+                                  "' is planar, the robot moves in space");
+    auto& x = block.estimate;
+    const Eigen::Vector3d before = x.head<3>();
+    const Eigen::Vector3d xi = delta.segment<3>(block.offset) + before.cross(theta);
+    const Eigen::Vector3d after = R * before + V * xi;
+    if (role == WorldRole::kPose) add_to_block(block, delta);
+    x.head<3>() = after;
+    u.middleRows<3>(block.offset) = skew(before - after);
+  }
+  return {first, {moved_.data(), state.dimension(), 3}};
 }
 
 std::unique_ptr<ErrorFrame> make_error_frame(std::string_view name) {

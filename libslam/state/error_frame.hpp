@@ -42,23 +42,32 @@ class StandardFrame final : public ErrorFrame {
   ChartChange retract(GaussianState& state, BlockId pose, const VectorRef& delta) override;
 };
 
-/// Right-invariant error of SE_{1+n}(2): heading theta, position p and every world point m share
-///     xi_theta = delta_theta,  xi_p = delta_p - J p delta_theta,  xi_m = delta_m - J m delta_theta
+/// Right-invariant error of SE_{1+n}(2) or SE_{1+n}(3): the orientation of the pose, its position p
+/// and every world point m share the rotation of the world,
+///     plane  xi_theta = delta_theta,  xi_p = delta_p - J p delta_theta,  xi_m alike
+///     space  xi_theta = delta_theta,  xi_p = delta_p + p x delta_theta,  xi_m alike
 /// with J the rotation by +90 degrees; blocks without a world role keep the additive error. Along
 /// the unobservable directions (a shift and a turn of the world) xi does not depend on the
 /// estimate, so the filter cannot gain information on them (Barrau & Bonnabel 2015,
-/// arXiv:1510.06263). A delayed pose takes part as a point with a heading of its own, whose error
-/// stays additive: a turn of the world changes it by the same angle everywhere, so the directions
-/// stay constant.
+/// arXiv:1510.06263). A planar pose turns points in space about the vertical and leaves their
+/// heights alone. A delayed pose takes part as a point with an orientation of its own, whose error
+/// stays additive: a turn of the world changes it by the same rotation everywhere, so the
+/// directions stay constant.
 class RightInvariantFrame final : public ErrorFrame {
  public:
   std::string_view name() const override { return "right_invariant"; }
-  /// Supported: SE2 poses, planar points, blocks without a world role.
+  /// Supported: SE2 and SE3 poses, points in the plane and in space, blocks without a world role.
   void require_supported(const BlockSpec& spec) const override;
+  /// Throws std::invalid_argument where a pose in space meets a planar block.
   ChartChange retract(GaussianState& state, BlockId pose, const VectorRef& delta) override;
 
  private:
-  Eigen::VectorXd moved_;  // u = J (p+ - p-) of every world position, stacked; workspace
+  ChartChange retract_planar(GaussianState& state, BlockId pose, const VectorRef& delta);
+  ChartChange retract_spatial(GaussianState& state, BlockId pose, const VectorRef& delta);
+  /// A zero matrix of `columns` columns over the whole state, in the workspace.
+  Eigen::Map<Eigen::MatrixXd> cleared(Eigen::Index dimension, Eigen::Index columns);
+
+  Eigen::VectorXd moved_;  // U: J (p+ - p-), or -[p+ - p-], of every world position, stacked
 };
 
 /// "standard" or "right_invariant"; throws std::invalid_argument otherwise.

@@ -20,6 +20,10 @@ void require_shape(const BlockSpec& spec, const char* what, Index rows, Index co
                               std::to_string(want_rows) + " x " + std::to_string(want_cols));
 }
 
+void require_error(const BlockSpec& spec, bool constant) {
+  if (constant) throw std::invalid_argument("block '" + spec.name + "' is a constant");
+}
+
 }  // namespace
 
 GaussianState::GaussianState() : GaussianState(std::make_unique<DenseCovariance>()) {}
@@ -32,6 +36,7 @@ GaussianState::GaussianState(const GaussianState& other)
       order_(other.order_),
       free_(other.free_),
       storage_(other.storage_),
+      constants_(other.constants_),
       used_(other.used_),
       dimension_(other.dimension_),
       covariance_(other.covariance_->clone()) {}
@@ -57,19 +62,23 @@ void GaussianState::reserve(Index tangent) {
   if (storage_.size() < tangent) storage_.conservativeResize(tangent);
 }
 
+int GaussianState::free_slot() {
+  if (free_.empty()) {
+    slots_.emplace_back();
+    return static_cast<int>(slots_.size()) - 1;
+  }
+  const int index = free_.back();
+  free_.pop_back();
+  return index;
+}
+
 BlockId GaussianState::append(const BlockSpec& spec, const VectorRef& estimate) {
   require_shape(spec, "estimate", estimate.size(), 1, storage_dimension(spec), 1);
   if (used_ + estimate.size() > storage_.size())
     storage_.conservativeResize(std::max<Index>(2 * storage_.size(), used_ + 16));
-  int index = static_cast<int>(slots_.size());
-  if (free_.empty()) {
-    slots_.emplace_back();
-  } else {
-    index = free_.back();
-    free_.pop_back();
-  }
-  slots_[static_cast<std::size_t>(index)] = {spec,  dimension_,      tangent_dimension(spec),
-                                             used_, estimate.size(), true};
+  const int index = free_slot();
+  slots_[static_cast<std::size_t>(index)] = {
+      spec, dimension_, tangent_dimension(spec), used_, estimate.size(), true, false};
   storage_.segment(used_, estimate.size()) = estimate;
   used_ += estimate.size();
   dimension_ += tangent_dimension(spec);
@@ -83,6 +92,15 @@ BlockId GaussianState::add(const BlockSpec& spec, const VectorRef& estimate, con
   require_shape(spec, "estimate", estimate.size(), 1, storage_dimension(spec), 1);
   covariance_->augment({}, BlockMatrix(cov));
   return append(spec, estimate);
+}
+
+BlockId GaussianState::add_constant(const BlockSpec& spec, const VectorRef& estimate) {
+  require_shape(spec, "estimate", estimate.size(), 1, storage_dimension(spec), 1);
+  const int index = free_slot();
+  slots_[static_cast<std::size_t>(index)] = {
+      spec, 0, 0, static_cast<Index>(constants_.size()), estimate.size(), true, true};
+  constants_.insert(constants_.end(), estimate.data(), estimate.data() + estimate.size());
+  return {index};
 }
 
 BlockId GaussianState::augment(const BlockSpec& spec, const Initialization& initialization) {
@@ -102,6 +120,9 @@ BlockId GaussianState::augment(const BlockSpec& spec, const Initialization& init
 
 void GaussianState::remove(BlockId block) {
   const Slot removed = slot(block);
+  slots_[static_cast<std::size_t>(block.value)].alive = false;
+  free_.push_back(block.value);
+  if (removed.constant) return;
   covariance_->remove(removed.offset, removed.tangent);
   const Index behind = used_ - removed.storage_offset - removed.storage;
   for (Index i = 0; i < behind; ++i)
@@ -115,8 +136,6 @@ void GaussianState::remove(BlockId block) {
     moved.storage_offset -= removed.storage;
   }
   order_.erase(position);
-  slots_[static_cast<std::size_t>(block.value)].alive = false;
-  free_.push_back(block.value);
 }
 
 std::optional<BlockId> GaussianState::find(std::string_view name) const {
@@ -127,17 +146,19 @@ std::optional<BlockId> GaussianState::find(std::string_view name) const {
 
 Eigen::Map<const Eigen::VectorXd> GaussianState::estimate(BlockId block) const {
   const Slot& s = slot(block);
-  return {storage_.data() + s.storage_offset, s.storage};
+  return {(s.constant ? constants_.data() : storage_.data()) + s.storage_offset, s.storage};
 }
 
 void GaussianState::set_estimate(BlockId block, const VectorRef& estimate) {
   const Slot& s = slot(block);
   require_shape(s.spec, "estimate", estimate.size(), 1, s.storage, 1);
+  require_error(s.spec, s.constant);
   storage_.segment(s.storage_offset, s.storage) = estimate;
 }
 
 GaussianState::MutableBlock GaussianState::mutable_block(BlockId block) {
   const Slot& s = slot(block);
+  require_error(s.spec, s.constant);
   return {s.spec, s.offset, s.tangent, {storage_.data() + s.storage_offset, s.storage}};
 }
 
@@ -147,6 +168,8 @@ BlockMatrix GaussianState::covariance_of(BlockId block) const {
 
 BlockMatrix GaussianState::cross_covariance(BlockId row, BlockId col) const {
   const Slot &r = slot(row), &c = slot(col);
+  if (r.constant || c.constant)
+    return BlockMatrix::Zero(tangent_dimension(r.spec), tangent_dimension(c.spec));
   BlockMatrix out(r.tangent, c.tangent);
   covariance_->marginal(r.offset, c.offset, out);
   return out;

@@ -32,22 +32,27 @@ class GaussianState {
   BlockId add(const BlockSpec& spec, const VectorRef& estimate, const MatrixRef& cov);
   /// Adds a block that is a function of others (a new landmark, a cloned pose).
   BlockId augment(const BlockSpec& spec, const Initialization& initialization);
+  /// Adds a block that is known exactly: it has an estimate and no error, so it takes no room in
+  /// the covariance and costs nothing there. Its covariances are zero; derivatives with respect to
+  /// it are left out by the filter.
+  BlockId add_constant(const BlockSpec& spec, const VectorRef& estimate);
   /// Marginalizes a block out.
   void remove(BlockId block);
   /// Makes room for `tangent` coordinates.
   void reserve(Eigen::Index tangent);
 
   std::optional<BlockId> find(std::string_view name) const;
-  /// Live blocks in state order.
+  /// Live blocks with an error, in state order; constants are not among them.
   const std::vector<BlockId>& blocks() const { return order_; }
   const BlockSpec& spec(BlockId block) const { return slot(block).spec; }
   bool alive(BlockId block) const;
+  bool is_constant(BlockId block) const { return slot(block).constant; }
 
   /// Dimension of the error (rows of the covariance).
   Eigen::Index dimension() const { return dimension_; }
   /// First tangent coordinate of a block.
   Eigen::Index offset(BlockId block) const { return slot(block).offset; }
-  /// Length of the error of a block.
+  /// Length of the error of a block; 0 of a constant.
   Eigen::Index size(BlockId block) const { return slot(block).tangent; }
 
   /// Estimate of a block, storage coordinates.
@@ -59,7 +64,7 @@ class GaussianState {
     Eigen::Index offset, size;             ///< of its error
     Eigen::Map<Eigen::VectorXd> estimate;  ///< storage coordinates, changed in place
   };
-  /// Valid until a block is added or removed.
+  /// Valid until a block is added or removed. Not for constants.
   MutableBlock mutable_block(BlockId block);
   /// Covariance of one block, tangent x tangent.
   BlockMatrix covariance_of(BlockId block) const;
@@ -75,15 +80,17 @@ class GaussianState {
   struct Slot {
     BlockSpec spec;
     Eigen::Index offset = 0, tangent = 0, storage_offset = 0, storage = 0;
-    bool alive = false;
+    bool alive = false, constant = false;
   };
   const Slot& slot(BlockId block) const;
+  int free_slot();
   BlockId append(const BlockSpec& spec, const VectorRef& estimate);
 
   std::vector<Slot> slots_;
   std::vector<BlockId> order_;
   std::vector<int> free_;
   Eigen::VectorXd storage_;  // capacity; used_ of it is live
+  std::vector<double> constants_;
   Eigen::Index used_ = 0, dimension_ = 0;
   std::unique_ptr<CovarianceStore> covariance_;
 };

@@ -42,9 +42,8 @@ int run(const std::string& config, const std::string& rawlog, const std::string&
   summary.input.file = rawlog;
   summary.timing.cpu_s = cpu_s;
   summary.timing.steps = index;
-  const auto identity = parameters.association.method == "nearest_neighbour"
-                            ? LandmarkIdentity::unknown
-                            : LandmarkIdentity::known;
+  const auto identity = parameters.association.uses_identities() ? LandmarkIdentity::known
+                                                                 : LandmarkIdentity::unknown;
   const LandmarkMap map = filter.landmarks();
   recorder.finish(summary, map, read_truth(find_truth(rawlog)), identity);
   std::cout << map.size() << " landmarks, " << cpu_s << " s CPU in the filter, " << directory

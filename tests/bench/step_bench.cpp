@@ -20,7 +20,8 @@ using bench::RingWorld;
 
 class LibslamFilter {
  public:
-  explicit LibslamFilter(const char* frame) : filter_(parts(frame)) {}
+  explicit LibslamFilter(const char* frame, const char* adaptation = "off")
+      : filter_(parts(frame, adaptation)) {}
 
   void process(const RingStep& step, bool first) {
     if (!first) filter_.propagate(&step.action);
@@ -30,10 +31,11 @@ class LibslamFilter {
   std::size_t landmarks() const { return filter_.registry().size(); }
 
  private:
-  static EkfSlamParts parts(const char* frame) {
+  static EkfSlamParts parts(const char* frame, const char* adaptation) {
     Parameters parameters;
     parameters.filter.error_frame = frame;
     parameters.association.gate_probability = 1.0;
+    parameters.policies.noise_adaptation.method = adaptation;
     return make_filter_parts(parameters);
   }
 
@@ -89,6 +91,9 @@ void sizes_up_to(benchmark::internal::Benchmark* family, int largest) {
 void step_invariant(benchmark::State& state) {
   step<LibslamFilter>(state, "right_invariant");
 }
+void step_adaptive(benchmark::State& state) {
+  step<LibslamFilter>(state, "right_invariant", "residual");
+}
 void step_standard(benchmark::State& state) {
   step<LibslamFilter>(state, "standard");
 }
@@ -100,6 +105,8 @@ void step_mrpt_davison(benchmark::State& state) {
 }
 
 BENCHMARK(step_invariant)->Name("step/invariant")->Apply([](auto* b) { sizes_up_to(b, 1600); });
+// What the adaptation of R costs: against step/invariant.
+BENCHMARK(step_adaptive)->Name("step/adaptive")->Apply([](auto* b) { sizes_up_to(b, 1600); });
 BENCHMARK(step_standard)->Name("step/standard")->Apply([](auto* b) { sizes_up_to(b, 1600); });
 // MRPT takes half a second per step with 800 landmarks.
 BENCHMARK(step_mrpt)->Name("step/mrpt_default")->Apply([](auto* b) { sizes_up_to(b, 200); });

@@ -32,10 +32,10 @@ inline BatchRun batch_imported(const std::string& config, const ImportedLog& log
   const EkfSlamParts parts = make_filter_parts(run.parameters);
   run.replay = replay_filter(rawlog, run.parameters);
   run.batch = optimize_batch(run.replay.log, parts, run.replay.estimate);
-  run.comparison = compare_with_batch(run.replay, run.batch, truth,
-                                      run.parameters.association.method == "nearest_neighbour"
-                                          ? LandmarkIdentity::unknown
-                                          : LandmarkIdentity::known);
+  run.comparison =
+      compare_with_batch(run.replay, run.batch, truth,
+                         run.parameters.association.uses_identities() ? LandmarkIdentity::known
+                                                                      : LandmarkIdentity::unknown);
   if (on_line_steps > 0)
     run.comparison.on_line = compare_on_line(run.replay, parts, run.batch, truth, on_line_steps);
   return run;

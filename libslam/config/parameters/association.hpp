@@ -14,16 +14,28 @@ struct AssociationParameters {
   double new_landmark_probability = 0.999;
   int confirm_after = 1;
   int prune_after = 0;
+  double appearance_distance = 0.3;
+  double appearance_ratio = 0.8;
+
+  /// False: the identities of the log are not even looked at.
+  bool uses_identities() const {
+    return method != "nearest_neighbour" && method != "joint_compatibility" &&
+           method != "appearance";
+  }
 
   void describe(auto& v) {
     v.value("method", method,
             {"",
              "known: identities of the log; nearest_neighbour: identities are ignored; "
-             "known_or_nearest: identities of the log without a gate, nearest neighbour for "
-             "observations that have none.",
+             "joint_compatibility: likewise, and the observations of a frame are paired together "
+             "(JCBB), which holds with a pose that is off by more than landmarks are apart; "
+             "known_or_nearest, known_or_joint: identities of the log without a gate, one of the "
+             "two for observations that have none; appearance: image features by their "
+             "descriptors, then by the gate.",
              0,
              0,
-             {"known", "nearest_neighbour", "known_or_nearest"}});
+             {"known", "nearest_neighbour", "joint_compatibility", "known_or_nearest",
+              "known_or_joint", "appearance"}});
     v.value("gate_probability", gate_probability,
             {"1",
              "An observation is accepted as a sighting of a landmark if its squared Mahalanobis "
@@ -33,13 +45,20 @@ struct AssociationParameters {
         "new_landmark_probability", new_landmark_probability,
         {"1",
          "An observation starts a new landmark only if it is beyond this chi-square probability of "
-         "every landmark; in between it is dropped as ambiguous (nearest_neighbour).",
+         "every landmark; in between it is dropped as ambiguous (all methods but known).",
          0, 1});
     v.value("confirm_after", confirm_after,
             {"1", "Sightings after which a landmark counts as confirmed.", 1});
     v.value("prune_after", prune_after,
             {"1", "A landmark that is not confirmed within this many updates is removed; 0: never.",
              0});
+    v.value("appearance_distance", appearance_distance,
+            {"1",
+             "Largest distance of two descriptors of one landmark: share of the bits, or of the "
+             "length of a SIFT descriptor (appearance).",
+             1e-6, 1});
+    v.value("appearance_ratio", appearance_ratio,
+            {"1", "Best descriptor distance over second best, at most (appearance).", 1e-6, 1});
   }
 };
 

@@ -25,11 +25,11 @@ struct InputParameters {
              {"strict", "skip", "repair"}});
     v.value("odometry", odometry,
             {"",
-             "Field of the log that drives the motion model; auto takes pose increments; none "
-             "ignores odometry.",
+             "Field of the log that drives the motion model; auto takes pose increments; twist: "
+             "body velocities in space; none ignores odometry.",
              0,
              0,
-             {"auto", "increments", "velocities", "ticks", "none"}});
+             {"auto", "increments", "velocities", "ticks", "twist", "none"}});
     v.value("odometry_label", odometry_label,
             {"", "Use only odometry observations with this sensor label; empty: all."});
     v.value("sensor_label", sensor_label,

@@ -4,6 +4,8 @@
 #include <string>
 
 #include <libslam/config/description.hpp>
+#include <libslam/config/parameters/stereo.hpp>
+#include <libslam/config/parameters/stereo_noise.hpp>
 
 namespace libslam {
 
@@ -12,17 +14,23 @@ struct FrontendParameters {
   std::string source = "range_bearing";
   double min_range = 0.0;
   double max_range = 1e6;
+  StereoFrontendParameters stereo;
+  FiducialParameters fiducials;
 
   void describe(auto& v) {
     v.value("source", source,
             {"",
-             "Where features come from: range-bearing observations, or the path that a sensor "
-             "reports of itself (odometry observations labelled input.sensor_label).",
+             "Where features come from: range-bearing observations, the path that a sensor reports "
+             "of itself (odometry observations labelled input.sensor_label), logged points of a "
+             "stereo camera, points of its images, or tags in its images.",
              0,
              0,
-             {"range_bearing", "sensor_path"}});
-    v.value("min_range", min_range, {"m", "Nearer observations are ignored.", 0});
+             {"range_bearing", "sensor_path", "stereo_points", "stereo_images", "fiducials"}});
+    v.value("min_range", min_range,
+            {"m", "Nearer observations are ignored; of stereo points by their depth.", 0});
     v.value("max_range", max_range, {"m", "Farther observations are ignored.", 0});
+    v.section("stereo", stereo);
+    v.section("fiducials", fiducials);
   }
 };
 
@@ -34,14 +42,17 @@ struct MeasurementParameters {
   double sigma_bearing_deg = 1.0;
   double sigma_displacement_xy = 0.001;
   double sigma_displacement_heading_deg = 0.1;
+  StereoNoiseParameters stereo;
 
   void describe(auto& v) {
-    v.value("model", model,
-            {"",
-             "Measurement model: of landmarks, or of the displacement of a sensor (no map).",
-             0,
-             0,
-             {"range_bearing", "sensor_displacement"}});
+    v.value(
+        "model", model,
+        {"",
+         "Measurement model: of landmarks by range and bearing or as points of a stereo camera, "
+         "or of the displacement of a sensor (no map).",
+         0,
+         0,
+         {"range_bearing", "stereo_point", "sensor_displacement"}});
     v.value(
         "noise", noise,
         {"",
@@ -57,6 +68,7 @@ struct MeasurementParameters {
             {"m", "Standard deviation of a sensor's displacement along x and y, each.", 1e-9});
     v.value("sigma_displacement_heading_deg", sigma_displacement_heading_deg,
             {"deg", "Standard deviation of the turn of a displacement.", 1e-9});
+    v.section("stereo", stereo);
   }
 };
 

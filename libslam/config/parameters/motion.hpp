@@ -4,6 +4,7 @@
 #include <string>
 
 #include <libslam/config/description.hpp>
+#include <libslam/config/parameters/twist.hpp>
 
 namespace libslam {
 
@@ -62,14 +63,17 @@ struct MotionParameters {
   double no_odometry_sigma_xy = 0.0;
   double no_odometry_sigma_heading_deg = 0.0;
   OdometryNoiseParameters noise;
+  TwistParameters twist;
+  ConstantTwistParameters constant_twist;
 
   void describe(auto& v) {
     v.value("model", model,
             {"",
-             "Motion model of the robot.",
+             "Motion model of the robot; in space body_twist, which integrates body velocities, or "
+             "constant_twist, which needs none.",
              0,
              0,
-             {"odometry_increment", "differential", "ackermann"}});
+             {"odometry_increment", "differential", "ackermann", "body_twist", "constant_twist"}});
     v.value("increment_form", increment_form,
             {"",
              "How odometry_increment applies an increment: rigid-body composition, or an arc of "
@@ -103,6 +107,8 @@ struct MotionParameters {
     v.value("no_odometry_sigma_heading_deg", no_odometry_sigma_heading_deg,
             {"deg", "Standard deviation added to the heading by a step without odometry.", 0});
     v.section("noise", noise);
+    v.section("twist", twist);
+    v.section("constant_twist", constant_twist);
   }
 };
 

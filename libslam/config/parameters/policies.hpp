@@ -2,6 +2,8 @@
 // What adapts the filter while it runs.
 
 #include <libslam/config/description.hpp>
+#include <libslam/config/parameters/disturbance.hpp>
+#include <libslam/config/parameters/noise_adaptation.hpp>
 
 namespace libslam {
 
@@ -9,6 +11,9 @@ namespace libslam {
 struct PolicyParameters {
   double update_period_s = 0.0;
   int update_every_n = 1;
+  NoiseAdaptationParameters noise_adaptation;
+  ProcessAdaptationParameters process_adaptation;
+  DisturbanceParameters disturbance;
 
   void describe(auto& v) {
     v.value("update_period_s", update_period_s,
@@ -17,6 +22,9 @@ struct PolicyParameters {
              "and more frequent updates make the filter overconfident.",
              0});
     v.value("update_every_n", update_every_n, {"1", "Use every n-th observation frame only.", 1});
+    v.section("noise_adaptation", noise_adaptation);
+    v.section("process_adaptation", process_adaptation);
+    v.section("disturbance", disturbance);
   }
 };
 

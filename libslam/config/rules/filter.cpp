@@ -1,3 +1,5 @@
+#include <string>
+
 #include <libslam/config/rules/rules.hpp>
 
 namespace libslam {
@@ -26,11 +28,90 @@ void check_filter(const Parameters& p, TruthAccess truth, Conflicts& conflicts) 
   }
 }
 
+namespace {
+
+void check_noise_adaptation(const Parameters& p, Conflicts& conflicts) {
+  const NoiseAdaptationParameters& n = p.policies.noise_adaptation;
+  const std::string section = "policies.noise_adaptation.";
+  if (n.bias && n.method == "off") {
+    conflicts.push_back({{section + "bias", section + "method"},
+                         "the offset is learned together with R, and R is not adapted"});
+  }
+  if (n.method == "off") {
+    return;
+  }
+  if (p.measurement.model == "sensor_displacement") {
+    conflicts.push_back({{section + "method", "measurement.model"},
+                         "only the noise of landmark sightings is adapted"});
+  }
+  if (n.bias) {
+    conflicts.push_back({{section + "bias"},
+                         "a map that is being made takes up a constant offset of its "
+                         "measurements; only a known map tells the two apart"});
+  }
+  if (n.min_sigma_range >= n.max_sigma_range) {
+    conflicts.push_back({{section + "min_sigma_range", section + "max_sigma_range"},
+                         "no sigma lies between a floor and a ceiling in this order"});
+  }
+  if (n.min_sigma_bearing_deg >= n.max_sigma_bearing_deg) {
+    conflicts.push_back({{section + "min_sigma_bearing_deg", section + "max_sigma_bearing_deg"},
+                         "no sigma lies between a floor and a ceiling in this order"});
+  }
+}
+
+void check_process_adaptation(const Parameters& p, Conflicts& conflicts) {
+  const ProcessAdaptationParameters& q = p.policies.process_adaptation;
+  const std::string section = "policies.process_adaptation.";
+  if (q.method == "off") {
+    return;
+  }
+  if (p.policies.noise_adaptation.method != "off") {
+    conflicts.push_back({{section + "method", "policies.noise_adaptation.method"},
+                         "an innovation that is too large can be explained by Q or by R; learning "
+                         "both from it lets either run away"});
+  }
+  if (p.measurement.model == "sensor_displacement") {
+    conflicts.push_back({{section + "method", "measurement.model"},
+                         "only sightings of landmarks teach the noise of the odometry"});
+  }
+  if (q.min_factor >= q.max_factor) {
+    conflicts.push_back({{section + "min_factor", section + "max_factor"},
+                         "no factor lies between a floor and a ceiling in this order"});
+  }
+}
+
+void check_disturbance(const Parameters& p, Conflicts& conflicts) {
+  const DisturbanceParameters& d = p.policies.disturbance;
+  if (d.response == "none") {
+    return;
+  }
+  if (p.measurement.model == "sensor_displacement") {
+    conflicts.push_back({{"policies.disturbance.response", "measurement.model"},
+                         "a disturbance is noticed by landmarks; without a map nothing tells it "
+                         "from a wrong displacement"});
+  }
+  if (d.trigger_probability >= 1.0 || d.release_probability >= 1.0) {
+    conflicts.push_back(
+        {{"policies.disturbance.trigger_probability", "policies.disturbance.release_probability"},
+         "at probability 1 no observation is ever beyond the level"});
+  }
+  if (d.release_probability > d.trigger_probability) {
+    conflicts.push_back(
+        {{"policies.disturbance.release_probability", "policies.disturbance.trigger_probability"},
+         "a disturbance would end where it begins; release it at a lower level"});
+  }
+}
+
+}  // namespace
+
 void check_policies(const Parameters& p, Conflicts& conflicts) {
   if (p.policies.update_period_s > 0.0 && p.policies.update_every_n > 1) {
     conflicts.push_back({{"policies.update_every_n", "policies.update_period_s"},
                          "two schedules for the same updates; keep the period or the count"});
   }
+  check_noise_adaptation(p, conflicts);
+  check_process_adaptation(p, conflicts);
+  check_disturbance(p, conflicts);
 }
 
 }  // namespace libslam

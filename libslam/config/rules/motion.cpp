@@ -12,20 +12,27 @@ struct CalibrationEntry {
   const char* name;
   const CalibrationParameter& parameter;
   bool is_scale;
-  bool of_differential, of_ackermann;  ///< the motion model has this parameter
+  bool of_differential, of_ackermann, of_twist;  ///< the motion model has this parameter
 };
 
-std::array<CalibrationEntry, 6> list_calibration(const CalibrationParameters& c) {
-  return {{{"scale_left", c.scale_left, true, true, true},
-           {"scale_right", c.scale_right, true, true, true},
-           {"track_width", c.track_width, true, true, false},
-           {"scale_speed", c.scale_speed, true, false, true},
-           {"scale_steering", c.scale_steering, true, false, true},
-           {"bias_steering", c.bias_steering, false, false, true}}};
+std::array<CalibrationEntry, 9> list_calibration(const CalibrationParameters& c) {
+  return {{{"scale_left", c.scale_left, true, true, true, false},
+           {"scale_right", c.scale_right, true, true, true, false},
+           {"track_width", c.track_width, true, true, false, false},
+           {"scale_speed", c.scale_speed, true, false, true, true},
+           {"scale_steering", c.scale_steering, true, false, true, false},
+           {"bias_steering", c.bias_steering, false, false, true, false},
+           {"bias_gyro_x", c.bias_gyro_x, false, false, false, true},
+           {"bias_gyro_y", c.bias_gyro_y, false, false, false, true},
+           {"bias_gyro_z", c.bias_gyro_z, false, false, false, true}}};
 }
 
 void check_no_odometry(const Parameters& p, Conflicts& conflicts) {
-  if (!(p.motion.no_odometry_sigma_xy > 0.0) || !(p.motion.no_odometry_sigma_heading_deg > 0.0)) {
+  // The velocity of constant_twist is a state, which takes the robot on.
+  const bool keeps_velocity = p.motion.model == "constant_twist";
+  const bool diffuses =
+      p.motion.no_odometry_sigma_xy > 0.0 && p.motion.no_odometry_sigma_heading_deg > 0.0;
+  if (!diffuses && !keeps_velocity) {
     conflicts.push_back(
         {{"input.odometry", "motion.no_odometry_sigma_xy", "motion.no_odometry_sigma_heading_deg"},
          "without odometry and without noise in its place the robot could never "
@@ -73,7 +80,8 @@ void check_calibration(const Parameters& p, Conflicts& conflicts) {
     const std::string section = std::string("calibration.") + entry.name;
     const CalibrationParameter& c = entry.parameter;
     const bool is_observable = (model == "differential" && entry.of_differential) ||
-                               (model == "ackermann" && entry.of_ackermann);
+                               (model == "ackermann" && entry.of_ackermann) ||
+                               (model == "body_twist" && entry.of_twist);
     if (c.enabled && !is_observable) {
       conflicts.push_back({{section + ".enabled", "motion.model"},
                            "motion model " + model +

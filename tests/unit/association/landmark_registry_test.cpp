@@ -38,3 +38,18 @@ TEST(LandmarkRegistry, WithoutPruningNothingIsGivenUp) {
   for (int update = 0; update < 100; ++update) ASSERT_TRUE(registry.record_update().empty());
   EXPECT_EQ(registry.size(), 1u);
 }
+
+TEST(LandmarkRegistry, GoesOnFromAnEarlierRun) {
+  LandmarkRegistry registry(3, 4, 100);
+  registry.restore({BlockId{5}, 40, 2, 4, false});
+  registry.restore({BlockId{6}, 107, 9, 30, true});
+  registry.number_from(108);
+  registry.number_from(50);
+  EXPECT_EQ(*registry.find(107), 1u);
+  EXPECT_THROW(registry.restore({BlockId{7}, 107, 1, 0, true}), std::invalid_argument);
+  EXPECT_THROW(registry.restore({BlockId{7}, kNoIdentity, 1, 0, true}), std::invalid_argument);
+  registry.add(BlockId{7}, kNoIdentity);
+  EXPECT_EQ(registry.landmarks()[2].id, 108);
+  EXPECT_EQ(registry.next_number(), 109);
+  EXPECT_EQ(registry.record_update(), std::vector<BlockId>{BlockId{5}});
+}

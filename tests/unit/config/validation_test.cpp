@@ -262,8 +262,52 @@ const Case kFilter[] = {
      {"filter.linearization"}},
 };
 
+const Case kAdaptation[] = {
+    {"adapts_measurement_noise",
+     [](Parameters& p) { p.policies.noise_adaptation.method = "residual"; },
+     {}},
+    {"adapts_process_noise",
+     [](Parameters& p) { p.policies.process_adaptation.method = "scale"; },
+     {}},
+    {"both_from_the_same_innovations",
+     [](Parameters& p) {
+       p.policies.noise_adaptation.method = "residual";
+       p.policies.process_adaptation.method = "scale";
+     },
+     {"policies.process_adaptation.method", "policies.noise_adaptation.method"}},
+    {"bias_in_slam",
+     [](Parameters& p) {
+       p.policies.noise_adaptation.method = "residual";
+       p.policies.noise_adaptation.bias = true;
+     },
+     {"policies.noise_adaptation.bias"}},
+    {"bias_without_adaptation",
+     [](Parameters& p) { p.policies.noise_adaptation.bias = true; },
+     {"policies.noise_adaptation.bias", "policies.noise_adaptation.method"}},
+    {"floor_above_ceiling",
+     [](Parameters& p) {
+       p.policies.noise_adaptation.method = "classic";
+       p.policies.noise_adaptation.min_sigma_range = 200.0;
+     },
+     {"policies.noise_adaptation.min_sigma_range", "policies.noise_adaptation.max_sigma_range"}},
+    {"bearing_floor_above_ceiling",
+     [](Parameters& p) {
+       p.policies.noise_adaptation.method = "residual";
+       p.policies.noise_adaptation.max_sigma_bearing_deg = 0.001;
+     },
+     {"policies.noise_adaptation.min_sigma_bearing_deg",
+      "policies.noise_adaptation.max_sigma_bearing_deg"}},
+    {"factor_floor_above_ceiling",
+     [](Parameters& p) {
+       p.policies.process_adaptation.method = "scale";
+       p.policies.process_adaptation.min_factor = 1000.0;
+     },
+     {"policies.process_adaptation.min_factor", "policies.process_adaptation.max_factor"}},
+};
+
 INSTANTIATE_TEST_SUITE_P(Calibration, ValidationOf, testing::ValuesIn(kCalibration), name_of);
 INSTANTIATE_TEST_SUITE_P(Others, ValidationOf, testing::ValuesIn(kOthers), name_of);
+INSTANTIATE_TEST_SUITE_P(Adaptation, ValidationOf, testing::ValuesIn(kAdaptation), name_of);
 INSTANTIATE_TEST_SUITE_P(Filter, ValidationOf, testing::ValuesIn(kFilter), name_of);
 
 TEST(Validation, OnlySimulationsKnowTheTruthAndOnlyByIdentity) {

@@ -108,7 +108,7 @@ TEST(OdometryIncrement, RefusesWhatItCannotDo) {
   EXPECT_THROW(OdometryIncrement(parameters("arc"), calibration), std::invalid_argument);
   const OdometryIncrement model(parameters("arc"), {});
   std::mt19937_64 random(1);
-  EXPECT_THROW(model.sample({0, 0, 0}, Eigen::VectorXd::Ones(1), {}, random),
+  EXPECT_THROW(model.sample(Eigen::Vector3d::Zero(), Eigen::VectorXd::Ones(1), {}, random),
                std::invalid_argument);
 }
 

@@ -61,3 +61,23 @@ TEST(Excitation, StandingStillEndsIt) {
   for (int k = 0; k < 400; ++k) excitation.observe(jacobian, noise, 1.0);
   EXPECT_FALSE(excitation.excited(0));
 }
+
+TEST(Excitation, GoesOnFromItsMemory) {
+  const auto observe = [](Excitation& excitation, std::uint64_t seed) {
+    std::mt19937_64 random(seed);
+    std::normal_distribution<double> normal;
+    Eigen::Matrix3Xd jacobian(3, 2);
+    for (double& value : jacobian.reshaped()) value = normal(random);
+    excitation.observe(jacobian, 0.1 * Eigen::Matrix3d::Identity(), 0.3);
+  };
+  Excitation whole({1.0, 2.0}), later({1.0, 2.0});
+  for (std::uint64_t k = 0; k < 50; ++k) observe(whole, k);
+  later.remember(whole.memory());
+  for (std::uint64_t k = 50; k < 120; ++k) {
+    observe(whole, k);
+    observe(later, k);
+    ASSERT_EQ(later.memory(), whole.memory());
+  }
+  EXPECT_TRUE(later.ever_excited(1));
+  EXPECT_THROW(Excitation({1.0}).remember(whole.memory()), std::invalid_argument);
+}

@@ -10,6 +10,8 @@
 
 #include <libslam/filter/ekf.hpp>
 #include <libslam/measurement/range_bearing.hpp>
+#include <libslam/policy/process_scale.hpp>
+#include <libslam/policy/sage_husa.hpp>
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 #define LIBSLAM_COUNTS_MALLOC 0
@@ -33,7 +35,7 @@ void* malloc(std::size_t size) noexcept {  // counts, then glibc's own
 
 using namespace libslam;
 
-TEST(Allocation, PropagateInnovateCorrectAreFreeOfItInSteadyState) {
+TEST(Allocation, AStepWithAdaptationIsFreeOfItInSteadyState) {
 #if !LIBSLAM_COUNTS_MALLOC
   GTEST_SKIP() << "sanitizers own malloc";
 #else
@@ -60,17 +62,35 @@ TEST(Allocation, PropagateInnovateCorrectAreFreeOfItInSteadyState) {
     motion.target = pose;
     motion.cov_noise = 1e-4 * Eigen::Matrix3d::Identity();
     std::vector<LinearizedMeasurement> measurements(10);
+    NoiseAdaptationParameters adaptation;
+    adaptation.method = "residual";
+    SageHusa noise(adaptation, {{"range", 0.1, 1e-3, 10.0, 0.0}, {"bearing", 0.1, 1e-3, 1.0, 0.0}},
+                   {0.99, 0.99});
+    ProcessScale process({}, 1.0);
+    std::vector<Feature> seen;
+    std::vector<Postfit> postfits;
     const auto step = [&](std::size_t k) {
       motion.estimate = state.estimate(pose);
       motion.wrt.clear();
       motion.wrt.add(pose, 3, 3).setIdentity();
+      motion.cov_noise = 1e-4 * Eigen::Matrix3d::Identity();
+      process.scale(motion.wrt.begin()->jacobian, motion.cov_noise);
       ekf.propagate(state, motion);
+      seen.clear();
+      for (std::size_t i = 0; i < measurements.size(); ++i)
+        seen.push_back(features[(k * 7 + i) % features.size()]);
+      noise.apply(seen);
       for (std::size_t i = 0; i < measurements.size(); ++i) {
         const std::size_t which = (k * 7 + i) % landmarks.size();
-        model.linearize(state, pose, landmarks[which], features[which], measurements[i]);
+        model.linearize(state, pose, landmarks[which], seen[i], measurements[i]);
         ekf.innovate(state, measurements[i]);
       }
-      return ekf.correct(state, pose, measurements).applied;
+      if (!ekf.correct(state, pose, measurements).applied) return false;
+      ekf.look_back(measurements, postfits);
+      for (std::size_t i = 0; i < postfits.size(); ++i) postfits[i].feature = i;
+      noise.observe(seen, postfits);
+      process.observe(ekf.look_back(measurements, pose, state.size(pose)));
+      return true;
     };
     ASSERT_TRUE(step(0));
     const long before = g_allocations.load();

@@ -140,6 +140,50 @@ TEST_P(DenseCovarianceSizes, ConsideredCoordinatesDoNotLearn) {
   EXPECT_LT((dx - k * nu).cwiseAbs().maxCoeff(), kRounding * 10);
 }
 
+// As in localization: all but the pose and one more coordinate are considered, and the change of
+// chart leaves them in place.
+TEST_P(DenseCovarianceSizes, MostCoordinatesMayBeConsidered) {
+  std::mt19937_64 random(19);
+  const Eigen::Index n = GetParam(), other = n - 2;
+  Store store(random_covariance(n, random));
+  const std::vector<PlacedJacobian> columns = {{0, random_matrix(2, 3, random)},
+                                               {n - 1, random_matrix(2, 1, random)}};
+  Eigen::MatrixXd h = Eigen::MatrixXd::Zero(2, n);
+  h.leftCols(3) = columns[0].jacobian;
+  h.rightCols(1) = columns[1].jacobian;
+  const Eigen::MatrixXd r = random_covariance(2, random);
+  Eigen::MatrixXd k = store.full * h.transpose() * (h * store.full * h.transpose() + r).inverse();
+  Eigen::MatrixXd u = random_matrix(n, 1, random);
+  std::vector<Eigen::Index> considered;
+  for (Eigen::Index i = 3; i < n; ++i)
+    if (i != other) {
+      considered.push_back(i);
+      k.row(i).setZero();
+      u.row(i).setZero();
+    }
+  const Eigen::MatrixXd i_kh = Eigen::MatrixXd::Identity(n, n) - k * h;
+  const Eigen::MatrixXd joseph = i_kh * store.full * i_kh.transpose() + k * r * k.transpose();
+  const Eigen::MatrixXd t = chart_matrix(2, u);
+  const Eigen::VectorXd nu = random_matrix(2, 1, random);
+  const Eigen::VectorXd dx =
+      correct(store.dense, {{0, 2, columns}}, r, nu, considered, chart_change(2, u));
+  EXPECT_LT(error(store.matrix(), t * joseph * t.transpose()), kRounding * 100);
+  EXPECT_LT((dx - k * nu).cwiseAbs().maxCoeff(), kRounding * 10);
+  for (const Eigen::Index i : considered)
+    for (const Eigen::Index j : considered) EXPECT_EQ(store.matrix()(i, j), store.full(i, j));
+}
+
+TEST_P(DenseCovarianceSizes, AssignReplacesAll) {
+  std::mt19937_64 random(20);
+  const Eigen::Index n = GetParam();
+  Store store(random_covariance(n, random));
+  Eigen::MatrixXd other = random_covariance(static_cast<int>(n), random);
+  other = other.selfadjointView<Eigen::Lower>();
+  store.dense.assign(other);
+  EXPECT_EQ(store.matrix(), other);
+  EXPECT_THROW(store.dense.assign(Eigen::MatrixXd::Zero(n + 1, n + 1)), std::invalid_argument);
+}
+
 TEST_P(DenseCovarianceSizes, PropagateMovesRowsAndColumns) {
   std::mt19937_64 random(13);
   const Eigen::Index n = GetParam(), offset = n >= 15 ? 7 : 0;

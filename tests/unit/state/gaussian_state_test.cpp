@@ -89,3 +89,22 @@ TEST(GaussianState, WrongShapesNameTheBlock) {
                std::invalid_argument);
   EXPECT_EQ(state.covariance().dimension(), 0);
 }
+
+TEST(GaussianState, AConstantHasAnEstimateAndNoError) {
+  std::mt19937_64 random(24);
+  GaussianState state = state_with_points(2, random);
+  const BlockId constant = state.add_constant(kPoint, Eigen::Vector2d(7, 8));
+  EXPECT_EQ(state.dimension(), 7);
+  EXPECT_EQ(state.blocks().size(), 3u);
+  EXPECT_TRUE(state.is_constant(constant));
+  EXPECT_EQ(state.size(constant), 0);
+  EXPECT_EQ(state.covariance_of(constant), BlockMatrix::Zero(2, 2));
+  EXPECT_EQ(state.cross_covariance(state.blocks()[0], constant), BlockMatrix::Zero(3, 2));
+  EXPECT_THROW(state.set_estimate(constant, Eigen::Vector2d(0, 0)), std::invalid_argument);
+  state.remove(state.blocks()[1]);
+  const GaussianState copy = state;
+  EXPECT_EQ(copy.estimate(constant), Eigen::VectorXd(Eigen::Vector2d(7, 8)));
+  state.remove(constant);
+  EXPECT_FALSE(state.alive(constant));
+  EXPECT_EQ(state.dimension(), 5);
+}

@@ -1,0 +1,61 @@
+#include <memory>
+#include <utility>
+
+#include <libslam/modules/pair_feed.hpp>
+
+namespace libslam {
+
+namespace {
+
+FilterStart start_in(SavedMap map) {
+  FilterStart start;
+  start.map.emplace().map = std::make_shared<const SavedMap>(std::move(map));
+  return start;
+}
+
+}  // namespace
+
+PairFeed::PairFeed(const Parameters& parameters, const std::string& entry_point, FilterStart start)
+    : intake_(entry_point, parameters.input.policy),
+      assembler_(intake_),
+      pipeline_(parameters, nullptr, std::move(start)),
+      last_(pipeline_.estimate()) {}
+
+PairFeed::PairFeed(const Parameters& parameters, const std::string& entry_point, ModuleState state)
+    : PairFeed(parameters, entry_point, start_in(std::move(state.map))) {
+  steps_ = state.steps;
+  assembler_.set_clock(state.clock);
+}
+
+const StepRecord& PairFeed::process(const mrpt::obs::CActionCollection::Ptr& action,
+                                    const mrpt::obs::CSensoryFrame::Ptr& frame) {
+  step_ = assemble(action, frame);
+  const bool may_have_moved = !step_.action && filter().registry().size() > 0;
+  last_ = may_have_moved ? pipeline_.process_frame(step_) : pipeline_.process(step_);
+  return last_;
+}
+
+const StepRecord& PairFeed::process_without_odometry() {
+  return last_ = pipeline_.process_frame(step_);
+}
+
+LogStep PairFeed::assemble(const mrpt::obs::CActionCollection::Ptr& action,
+                           const mrpt::obs::CSensoryFrame::Ptr& frame) {
+  if (action) assembler_.add_action(action, steps_);
+  if (frame)
+    assembler_.add_frame(frame, steps_);
+  else
+    assembler_.finish();
+  LogStep step;
+  if (!assembler_.ready().empty()) step = std::move(assembler_.ready().front());
+  assembler_.ready().clear();
+  step.index = steps_++;
+  return step;
+}
+
+std::span<const std::string> PairFeed::take_warnings() {
+  const std::span<const std::string> all = intake_.summary().warnings;
+  return all.subspan(std::exchange(warnings_taken_, all.size()));
+}
+
+}  // namespace libslam

@@ -1,0 +1,102 @@
+#pragma once
+// Where a robot, or a head that somebody carries, is by what its stereo camera sees of a map of
+// landmarks; for programs of MRPT.
+//
+// Given   observations in the order of their times, one after another (processObservation) or as
+//         pairs of action and frame (processActionObservation),
+// Then    the pose is that of the last one, in space as MRPT's own types have it.
+//
+// Points come from CObservationStereoImagesFeatures, or with the front-end for images from
+// CObservationStereoImages (`parameters.frontend.source`). What moves the pose between them:
+// - CObservationIMU with velocities (IMU_X_VEL ..., of the vehicle) and turn rates (IMU_WX ...):
+//   each holds until the next reading. The default.
+// - CObservationOdometry, a planar robot (`parameters.motion.model` differential or another one of
+//   the plane, `parameters.input.odometry` auto). Times are cut at the images
+//   (io/observation_splitter.hpp): an image counts once the reading of odometry after it is there.
+// - the action of a pair.
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <mrpt/config/CLoadableOptions.h>
+#include <mrpt/poses/poses_frwds.h>
+#include <mrpt/system/COutputLogger.h>
+
+#include <libslam/config/parameters.hpp>
+#include <libslam/data/step_record.hpp>
+
+namespace mrpt::obs {
+class CActionCollection;
+class CObservation;
+class CSensoryFrame;
+}  // namespace mrpt::obs
+namespace mrpt::serialization {
+class CArchive;
+}
+
+namespace libslam {
+
+class StereoLocalization : public mrpt::system::COutputLogger {
+ public:
+  struct TOptions : public mrpt::config::CLoadableOptions {
+    TOptions();
+
+    /// From `section`: map_file, a map that slam-run --save-map or saveMap() wrote or landmarks
+    /// id,x,y,z; map_sigma [m] of such landmarks; add_landmarks, false: localization alone. The
+    /// rest of `parameters` as config/ini_parameters.hpp says. Throws ConfigError
+    /// (config/config_error.hpp) naming section and key.
+    void loadFromConfigFile(const mrpt::config::CConfigFileBase& source,
+                            const std::string& section) override;
+    void dumpToTextStream(std::ostream& out) const override;
+
+    /// Defaults that differ from config/README.md: input.odometry twist, motion.model body_twist,
+    /// frontend.source stereo_points, measurement.model stereo_point, association.method
+    /// known_or_nearest, map.start given_pose.
+    Parameters parameters;
+  };
+  TOptions options;
+
+  StereoLocalization();
+  ~StereoLocalization() override;
+
+  /// Reads `options` and verbosity_level from `section`.
+  void loadOptions(const mrpt::config::CConfigFileBase& ini,
+                   const std::string& section = "StereoLocalization");
+
+  /// Starts anew, with the options as they are now, at `x0` in the frame of the map; null: where
+  /// `parameters.map` and `parameters.filter` say. Must be called before the first observation.
+  /// Throws ConfigError if the options cannot run, InputError (io/input_error.hpp) if the map
+  /// cannot be read, and std::invalid_argument if it does not fit the filter.
+  void initialize(const mrpt::poses::CPose3DPDF* x0 = nullptr);
+
+  /// Observations of other classes pass by. What cannot be used is logged and left out, unless
+  /// input.policy is strict, which throws InputError or UnusableOdometry (frontend/odometry.hpp).
+  /// Throws std::logic_error before initialize().
+  void processObservation(const std::shared_ptr<mrpt::obs::CObservation>& observation);
+  void processActionObservation(const std::shared_ptr<mrpt::obs::CActionCollection>& action,
+                                const std::shared_ptr<mrpt::obs::CSensoryFrame>& SF);
+
+  /// T_world_robot. Near a pitch of +-90 degrees the angles of the first form are singular.
+  void getCurrentPose(mrpt::poses::CPose3DPDFGaussian& out_pose) const;
+  void getCurrentPose(mrpt::poses::CPose3DQuatPDFGaussian& out_pose) const;
+  /// How many points the last observation gave and what became of them, the calibration ...
+  const StepRecord& getLastStep() const;
+  /// Landmarks of the map.
+  std::vector<LandmarkEstimate> getLandmarks() const;
+
+  /// The map in a file for the next time (io/map_file.hpp); throws like write_map_file.
+  void saveMap(const std::string& file) const;
+  /// As RangeBearingSlam2D has it; observations that wait for odometry are not part of it.
+  void saveState(mrpt::serialization::CArchive& out) const;
+  void loadState(mrpt::serialization::CArchive& in);
+
+ private:
+  struct Impl;
+  Impl& running() const;
+  void report_step();
+
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace libslam

@@ -1,0 +1,182 @@
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+
+#include <libslam/policy/sage_husa.hpp>
+#include <libslam/state/chi_square.hpp>
+
+namespace libslam {
+
+namespace {
+
+using Eigen::Index;
+
+double distance_of(const Feature& feature) {
+  if (!feature.camera) return feature.z[0];
+  // A disparity that noise made tiny or negative: as far as the camera can tell, one pixel.
+  return feature.camera->fx * feature.camera->baseline / std::max(feature.z[2], 1.0);
+}
+
+void require(bool holds, const std::string& what) {
+  if (!holds) throw std::invalid_argument("noise adaptation: " + what);
+}
+
+/// The symmetric matrix with every eigenvalue at least `floor`.
+MeasurementMatrix raised(const MeasurementMatrix& symmetric, double floor) {
+  const Eigen::SelfAdjointEigenSolver<MeasurementMatrix> solver(symmetric);
+  return solver.eigenvectors() * solver.eigenvalues().cwiseMax(floor).asDiagonal() *
+         solver.eigenvectors().transpose();
+}
+
+}  // namespace
+
+SageHusa::SageHusa(const NoiseAdaptationParameters& parameters,
+                   std::vector<NoiseComponent> components, GateProbabilities gate)
+    : parameters_(parameters), components_(std::move(components)) {
+  require(parameters.method == "residual" || parameters.method == "classic",
+          "unknown method '" + parameters.method + "'");
+  require(parameters.forgetting > 0.0 && parameters.forgetting < 1.0,
+          "forgetting must be in (0, 1), got " + std::to_string(parameters.forgetting));
+  require(parameters.prior_weight >= 1.0,
+          "prior_weight must be >= 1, got " + std::to_string(parameters.prior_weight));
+  require(parameters.channels >= 1,
+          "channels must be >= 1, got " + std::to_string(parameters.channels));
+  require(!components_.empty() && components_.size() <= kMaxMeasurementDimension,
+          "measurements of dimension " + std::to_string(components_.size()));
+  for (const NoiseComponent& c : components_)
+    require(c.floor > 0.0 && c.floor < c.ceiling,
+            "the floor of sigma of " + c.name + " must be positive and below its ceiling");
+  const auto dimension = static_cast<Index>(components_.size());
+  kappa_identified_ = gated_covariance(gate.identified, static_cast<int>(dimension));
+  kappa_anonymous_ = gated_covariance(gate.anonymous, static_cast<int>(dimension));
+  Channel start;
+  start.factor = start.sum = MeasurementMatrix::Identity(dimension, dimension);
+  start.bias = start.sum_innovation = MeasurementVector::Zero(dimension);
+  start.past = std::pow(parameters.forgetting, parameters.prior_weight);
+  start.reference = MeasurementMatrix::Zero(dimension, dimension);
+  for (Index j = 0; j < dimension; ++j)
+    start.reference(j, j) = components_[static_cast<std::size_t>(j)].configured;
+  channels_.assign(static_cast<std::size_t>(parameters.channels), start);
+}
+
+std::size_t SageHusa::slot(int channel) const {
+  require(channel >= 0, "channel " + std::to_string(channel));
+  return std::min(static_cast<std::size_t>(channel), channels_.size() - 1);
+}
+
+MeasurementMatrix SageHusa::shape_of(const Feature& feature, Channel& channel) const {
+  const auto dimension = static_cast<Index>(components_.size());
+  require(feature.z.size() == dimension && feature.cov.rows() == dimension,
+          "a feature of dimension " + std::to_string(feature.z.size()) + ", expected " +
+              std::to_string(dimension));
+  const Eigen::LLT<MeasurementMatrix> factor(feature.cov);
+  require(factor.info() == Eigen::Success, "the covariance of a feature is not positive definite");
+  MeasurementMatrix shape = factor.matrixL();
+  if (!channel.seen) {
+    channel.reference = shape;
+    channel.seen = true;
+  }
+  for (Index j = 0; j < dimension; ++j) {
+    const double growth = components_[static_cast<std::size_t>(j)].growth_per_m;
+    if (growth > 0.0) shape.row(j) *= 1.0 + growth * distance_of(feature);
+  }
+  return shape;
+}
+
+/// A congruence: it cannot make a positive definite matrix indefinite.
+void SageHusa::bound(MeasurementMatrix& cov) const {
+  for (Index j = 0; j < cov.rows(); ++j) {
+    const NoiseComponent& c = components_[static_cast<std::size_t>(j)];
+    if (!(cov(j, j) > 0.0)) continue;  // an innovation form that nobody repairs
+    const double sigma = std::sqrt(cov(j, j)),
+                 scale = std::clamp(sigma, c.floor, c.ceiling) / sigma;
+    if (scale == 1.0) continue;
+    cov.row(j) *= scale;
+    cov.col(j) *= scale;
+  }
+}
+
+void SageHusa::apply(std::span<Feature> features) {
+  shapes_.clear();
+  for (Feature& feature : features) {
+    Channel& channel = channels_[slot(feature.channel)];
+    const MeasurementMatrix& shape = shapes_.emplace_back(shape_of(feature, channel));
+    const MeasurementMatrix half = shape * channel.factor;
+    feature.cov.noalias() = half * shape.transpose();
+    bound(feature.cov);
+    if (parameters_.bias) feature.z -= channel.bias;
+  }
+}
+
+MeasurementMatrix SageHusa::sample(const Postfit& postfit, const MeasurementMatrix& shape,
+                                   const MeasurementMatrix& cov, double kappa) const {
+  const auto lower = shape.triangularView<Eigen::Lower>();
+  MeasurementMatrix added;
+  MeasurementVector error;
+  if (parameters_.method == "residual") {
+    error = lower.solve(postfit.residual);
+    added = postfit.cov_predicted;
+  } else {
+    error = lower.solve(postfit.innovation);
+    added = cov - postfit.cov_innovation;
+  }
+  lower.solveInPlace(added);
+  lower.solveInPlace(added.transpose());
+  added += error * error.transpose() / kappa;
+  return added;
+}
+
+void SageHusa::observe(std::span<const Feature> features, std::span<const Postfit> corrected) {
+  require(features.size() == shapes_.size(), "other features than those that apply has seen");
+  for (Channel& channel : channels_) {
+    channel.sum.setZero();
+    channel.sum_innovation.setZero();
+    channel.count = 0;
+  }
+  for (const Postfit& postfit : corrected) {
+    const Feature& feature = features[postfit.feature];
+    Channel& channel = channels_[slot(feature.channel)];
+    const double kappa = feature.id == kNoIdentity ? kappa_anonymous_ : kappa_identified_;
+    channel.sum += sample(postfit, shapes_[postfit.feature], feature.cov, kappa);
+    channel.sum_innovation += postfit.innovation;
+    ++channel.count;
+  }
+  for (Channel& channel : channels_)
+    if (channel.count > 0) blend(channel);
+}
+
+void SageHusa::blend(Channel& channel) const {
+  const double d = (1.0 - parameters_.forgetting) / (1.0 - channel.past);
+  channel.past *= parameters_.forgetting;
+  const double share = d / channel.count;
+  channel.factor =
+      (1.0 - d) * channel.factor + 0.5 * share * (channel.sum + channel.sum.transpose()).eval();
+  if (parameters_.method == "classic" && parameters_.eigenvalue_floor > 0.0)
+    channel.factor = raised(channel.factor, parameters_.eigenvalue_floor);
+  if (parameters_.bias) channel.bias += share * channel.sum_innovation;
+}
+
+std::vector<AdaptedNoise> SageHusa::noise() const {
+  std::vector<AdaptedNoise> all;
+  all.reserve(channels_.size() * components_.size());
+  for (std::size_t c = 0; c < channels_.size(); ++c) {
+    const Channel& channel = channels_[c];
+    MeasurementMatrix cov = channel.reference * channel.factor * channel.reference.transpose();
+    bound(cov);
+    for (std::size_t j = 0; j < components_.size(); ++j) {
+      const auto row = static_cast<Index>(j);
+      AdaptedNoise& noise = all.emplace_back();
+      noise.name = components_[j].name;
+      if (channels_.size() > 1) noise.name += "_" + std::to_string(c + 1);
+      noise.sigma = std::sqrt(std::max(cov(row, row), 0.0));
+      noise.configured = channel.reference.row(row).norm();
+    }
+  }
+  return all;
+}
+
+}  // namespace libslam

@@ -1,0 +1,100 @@
+#pragma once
+// Measurement noise estimated on line: Sage and Husa's time-varying noise estimator, per sensor.
+//
+//   R_i = L_i A L_i^T,   L_i = D(z_i) chol(R0_i)                          noise of measurement i
+//   e_i = R S^-1 nu,  C_i = H P+ H^T                                      (data/postfit.hpp)
+//   residual   A <- (1 - d) A + d mean_i L_i^-1 (e_i e_i^T / kappa + C_i) L_i^-T
+//   innovation A <- (1 - d) A + d mean_i L_i^-1 (nu_i nu_i^T / kappa - H P- H^T) L_i^-T, repaired
+//   bias       r <- r + d mean_i nu_i,   nu_i = z_i - r - h(x-)
+//   d_k = (1 - b) / (1 - b^(k + k0)),  k counts the updates of the sensor
+//
+// A has no unit and starts as the identity. R0_i is what the feature brings, so that covariances
+// which differ from measurement to measurement keep their sizes relative to each other, and where
+// all are equal R_i is free to become any covariance. D is the diagonal of 1 + growth * distance:
+// distance z_0 of a range, f baseline / z_2 of a stereo point.
+//
+// The residual form is a step of expectation maximization: R is the covariance of the measurement
+// errors given all data so far. It is a sum of squares, hence positive definite whatever comes; the
+// innovation form is a difference. Where H P- H^T is known exactly both have the true R as their
+// only fixed point; the residual form then moves by (R / S)^2 of the step d.
+//
+// A gate at probability p cuts the tail of nu: what passes has the covariance kappa S with
+// kappa = F_{m+2}(g) / F_m(g), F_m the chi-square distribution with m degrees of freedom,
+// F_m(g) = p. Without that factor R would settle below the truth.
+//
+// Forgetting counts updates, not seconds: a pause says nothing about the noise, and after one a
+// single observation must not replace all that was learned.
+//
+// Sources: Sage & Husa, Proc. Joint Automatic Control Conf. 1969; seeds.md (S3.14) with its
+// safeguards; truncated chi-square: Tallis, J. Royal Stat. Soc. B 25 (1963) 223.
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include <libslam/config/parameters/noise_adaptation.hpp>
+#include <libslam/policy/noise_policy.hpp>
+
+namespace libslam {
+
+/// One row of a measurement, in its unit.
+struct NoiseComponent {
+  std::string name;                 ///< "range"
+  double configured = 0.0;          ///< sigma reported until the first feature has come
+  double floor = 0.0, ceiling = 0;  ///< of sigma
+  double growth_per_m = 0.0;        ///< of sigma, per sigma at distance 0
+};
+
+/// Probabilities at which the associator gates features with and without identity; 1: no gate.
+struct GateProbabilities {
+  double identified = 1.0, anonymous = 1.0;
+};
+
+class SageHusa final : public NoisePolicy {
+ public:
+  /// `components`: rows of the measurements of all sensors. Throws std::invalid_argument if there
+  /// is none or too many, a floor is not below its ceiling, or a parameter is out of its range.
+  SageHusa(const NoiseAdaptationParameters& parameters, std::vector<NoiseComponent> components,
+           GateProbabilities gate);
+
+  /// Throws std::invalid_argument if a feature has not the dimension of the components or its
+  /// covariance is not positive definite.
+  void apply(std::span<Feature> features) override;
+  void observe(std::span<const Feature> features, std::span<const Postfit> corrected) override;
+  /// Sigmas of the noise at distance 0, of each sensor's first feature; a number follows the name
+  /// where there are several sensors.
+  std::vector<AdaptedNoise> noise() const override;
+
+  /// A of a sensor.
+  const MeasurementMatrix& factor(int channel) const { return channels_[slot(channel)].factor; }
+  /// r of a sensor, in the unit of the measurement.
+  const MeasurementVector& bias(int channel) const { return channels_[slot(channel)].bias; }
+
+ private:
+  struct Channel {
+    MeasurementMatrix factor, reference;  ///< A; L at distance 0 of the first feature
+    MeasurementVector bias;
+    bool seen = false;
+    double past = 1.0;  ///< b^(k + k0)
+    // Of the observation at hand:
+    MeasurementMatrix sum;
+    MeasurementVector sum_innovation;
+    int count = 0;
+  };
+
+  std::size_t slot(int channel) const;
+  /// D chol(R0).
+  MeasurementMatrix shape_of(const Feature& feature, Channel& channel) const;
+  void bound(MeasurementMatrix& cov) const;
+  MeasurementMatrix sample(const Postfit& postfit, const MeasurementMatrix& shape,
+                           const MeasurementMatrix& cov, double kappa) const;
+  void blend(Channel& channel) const;
+
+  NoiseAdaptationParameters parameters_;
+  std::vector<NoiseComponent> components_;
+  double kappa_identified_, kappa_anonymous_;
+  std::vector<Channel> channels_;
+  std::vector<MeasurementMatrix> shapes_;  ///< of the features of the last `apply`
+};
+
+}  // namespace libslam

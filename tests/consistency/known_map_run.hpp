@@ -1,0 +1,27 @@
+#pragma once
+// Localization in a known map on simulated drives, filter by filter on the same logs.
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <libslam/config/parameters.hpp>
+#include <libslam/simulation/scenario.hpp>
+
+namespace libslam::test {
+
+/// One filter, over many drives.
+struct LocalizationFigures {
+  double rmse_position = 0.0;  ///< over all observations of all drives [m]
+  double nees = 0.0;           ///< of the pose, mean; ideal 3
+  int failures = 0;            ///< corrections refused, or an unhealthy filter
+  /// Adapted sigma of the range [m], mean over the drives, by observation.
+  std::vector<double> sigma_range;
+};
+
+/// Drives with seeds 1 ... `drives`; `filters` by name, their parameters complete.
+std::map<std::string, LocalizationFigures> localize(
+    const Scenario& scenario, const std::map<std::string, Parameters>& filters, int drives);
+
+}  // namespace libslam::test

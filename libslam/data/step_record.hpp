@@ -50,7 +50,7 @@ struct StepRecord {
   int accepted = 0, gated = 0, ambiguous = 0, new_landmarks = 0;
   std::vector<CalibrationValue> calibration;
   std::vector<AdaptedNoise> noise;  ///< the same names in every step of a run
-  double step_ms = 0.0;  ///< wall time of the step; never written to trajectory.csv
+  double step_ms = 0.0;             ///< wall time of the step; never written to trajectory.csv
 };
 
 }  // namespace libslam

@@ -35,7 +35,7 @@ struct EkfSlamParts {
   /// Present: features are readings of a sensor's own path, and there is no map; `measurement` and
   /// `associator` may then be null.
   std::optional<DisplacementUpdate> displacement;
-  std::unique_ptr<NoisePolicy> noise;  ///< null: R as the features bring it
+  std::unique_ptr<NoisePolicy> noise;     ///< null: R as the features bring it
   std::unique_ptr<ProcessScale> process;  ///< null: Q as the motion model says
   LandmarkRegistry registry{1, 0};
   BlockVector start;  ///< start pose, storage of the motion model's pose; empty: the origin

@@ -59,11 +59,11 @@ std::vector<NoiseComponent> noise_components(const Parameters& p) {
   const NoiseAdaptationParameters& n = p.policies.noise_adaptation;
   constexpr double kDegree = kPi / 180.0;
   if (p.measurement.model == "range_bearing")
-    return {{"range", p.measurement.sigma_range, n.min_sigma_range, n.max_sigma_range,
-             n.range_growth_per_m},
-            {"bearing", p.measurement.sigma_bearing_deg * kDegree,
-             n.min_sigma_bearing_deg * kDegree, n.max_sigma_bearing_deg * kDegree,
-             n.bearing_growth_per_m}};
+    return {
+        {"range", p.measurement.sigma_range, n.min_sigma_range, n.max_sigma_range,
+         n.range_growth_per_m},
+        {"bearing", p.measurement.sigma_bearing_deg * kDegree, n.min_sigma_bearing_deg * kDegree,
+         n.max_sigma_bearing_deg * kDegree, n.bearing_growth_per_m}};
   throw_unknown("measurement model of a noise adaptation", p.measurement.model);
 }
 

@@ -15,6 +15,10 @@ namespace {
 
 using Eigen::Index;
 
+/// Errors that always have the same ratio make R singular but for rounding, which then decides on
+/// its sign: so much of every error is taken to be its own.
+constexpr double kIndependence = 1e-3;
+
 double distance_of(const Feature& feature) {
   if (!feature.camera) return feature.z[0];
   // A disparity that noise made tiny or negative: as far as the camera can tell, one pixel.
@@ -87,16 +91,20 @@ MeasurementMatrix SageHusa::shape_of(const Feature& feature, Channel& channel) c
   return shape;
 }
 
-/// A congruence: it cannot make a positive definite matrix indefinite.
+/// A congruence, and slightly smaller correlations: neither can make a matrix less definite.
 void SageHusa::bound(MeasurementMatrix& cov) const {
   for (Index j = 0; j < cov.rows(); ++j) {
     const NoiseComponent& c = components_[static_cast<std::size_t>(j)];
     if (!(cov(j, j) > 0.0)) continue;  // an innovation form that nobody repairs
-    const double sigma = std::sqrt(cov(j, j)), scale = std::clamp(sigma, c.floor, c.ceiling) / sigma;
+    const double sigma = std::sqrt(cov(j, j)),
+                 scale = std::clamp(sigma, c.floor, c.ceiling) / sigma;
     if (scale == 1.0) continue;
     cov.row(j) *= scale;
     cov.col(j) *= scale;
   }
+  if (parameters_.method == "classic") return;  // repaired by its eigenvalues, or not at all
+  const MeasurementMatrix diagonal = cov.diagonal().asDiagonal();
+  cov += kIndependence * (diagonal - cov);
 }
 
 void SageHusa::apply(std::span<Feature> features) {
@@ -152,8 +160,8 @@ void SageHusa::blend(Channel& channel) const {
   const double d = (1.0 - parameters_.forgetting) / (1.0 - channel.past);
   channel.past *= parameters_.forgetting;
   const double share = d / channel.count;
-  channel.factor = (1.0 - d) * channel.factor +
-                   0.5 * share * (channel.sum + channel.sum.transpose()).eval();
+  channel.factor =
+      (1.0 - d) * channel.factor + 0.5 * share * (channel.sum + channel.sum.transpose()).eval();
   if (parameters_.method == "classic" && parameters_.eigenvalue_floor > 0.0)
     channel.factor = raised(channel.factor, parameters_.eigenvalue_floor);
   if (parameters_.bias) channel.bias += share * channel.sum_innovation;

@@ -116,7 +116,8 @@ LocalizationFigures pooled(const std::vector<std::vector<std::unique_ptr<Localiz
   double squares = 0.0, nees = 0.0;
   int observations = 0, nees_count = 0;
   std::size_t length = drives[0][lane]->figures.sigma_range.size();
-  for (const auto& drive : drives) length = std::min(length, drive[lane]->figures.sigma_range.size());
+  for (const auto& drive : drives)
+    length = std::min(length, drive[lane]->figures.sigma_range.size());
   all.sigma_range.assign(length, 0.0);
   for (const auto& drive : drives) {
     const Localizer& one = *drive[lane];

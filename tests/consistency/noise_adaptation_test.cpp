@@ -23,8 +23,7 @@ double nees(const CampaignRun& run, const std::string& variant, std::size_t poin
 }
 
 Scenario webmap() {
-  Scenario scenario =
-      load_scenario(std::filesystem::path(LIBSLAM_CONFIG_DIR) / "sim_webmap.yaml");
+  Scenario scenario = load_scenario(std::filesystem::path(LIBSLAM_CONFIG_DIR) / "sim_webmap.yaml");
   scenario.truth = {};
   return scenario;
 }
@@ -76,8 +75,8 @@ TEST(NoiseAdaptation, LocalizesThroughANoisyStretchAndFindsItsSigma) {
                                 kPaired);
   const LocalizationFigures& adaptive = figures.at("adaptive");
   for (const auto& [name, one] : figures)
-    std::printf("%s rmse %.4f m nees %.2f failures %d\n", name.c_str(), one.rmse_position,
-                one.nees, one.failures);
+    std::printf("%s rmse %.4f m nees %.2f failures %d\n", name.c_str(), one.rmse_position, one.nees,
+                one.failures);
   EXPECT_LE(adaptive.rmse_position / figures.at("fixed").rmse_position, 0.92);
   EXPECT_LE(adaptive.nees, 3.5);
   EXPECT_EQ(adaptive.failures, 0);

@@ -29,9 +29,8 @@ struct NoiseAdaptationParameters {
              0,
              {"off", "residual", "classic"}});
     v.value("forgetting", forgetting,
-            {"1",
-             "Weight of the past per update: R remembers about 1 / (1 - forgetting) updates.", 0.5,
-             0.99999});
+            {"1", "Weight of the past per update: R remembers about 1 / (1 - forgetting) updates.",
+             0.5, 0.99999});
     v.value("prior_weight", prior_weight,
             {"1", "The noise that the log or the configuration gives counts like so many updates.",
              1, 1e6});
@@ -56,10 +55,10 @@ struct NoiseAdaptationParameters {
             {"deg", "Floor of a bearing's sigma.", 1e-9});
     v.value("max_sigma_bearing_deg", max_sigma_bearing_deg,
             {"deg", "Ceiling of a bearing's sigma.", 1e-9});
-    v.value("bearing_growth_per_m", bearing_growth_per_m,
-            {"1/m",
-             "Known shape: sigma of a bearing is multiplied by 1 + bearing_growth_per_m * range.",
-             0});
+    v.value(
+        "bearing_growth_per_m", bearing_growth_per_m,
+        {"1/m",
+         "Known shape: sigma of a bearing is multiplied by 1 + bearing_growth_per_m * range.", 0});
   }
 };
 

@@ -97,9 +97,9 @@ TEST_F(AppearanceTest, TwinsAreAmbiguous) {
 }
 
 TEST_F(AppearanceTest, NoLandmarkIsPairedTwice) {
-  const auto verdicts = associate({feature_like(with_flips(known_[3], 30)),
-                                   feature_like(with_flips(known_[3], 10)),
-                                   feature_like(with_flips(known_[4], 30))});
+  const auto verdicts =
+      associate({feature_like(with_flips(known_[3], 30)), feature_like(with_flips(known_[3], 10)),
+                 feature_like(with_flips(known_[4], 30))});
   EXPECT_EQ(verdicts[0].outcome, Outcome::kAmbiguous);
   EXPECT_EQ(verdicts[1].outcome, Outcome::kPaired);
   EXPECT_EQ(verdicts[1].landmark, 3U);

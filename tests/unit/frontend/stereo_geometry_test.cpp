@@ -20,8 +20,8 @@ using namespace libslam::testing;
 /// texture of `kFocal / depth` px per metre.
 Gray view_of_plane(const Texture& texture, const mrpt::img::TCamera& camera,
                    const Eigen::Isometry3d& T_left_camera, double depth) {
-  cv::Mat K = (cv::Mat_<double>(3, 3) << camera.fx(), 0, camera.cx(), 0, camera.fy(), camera.cy(),
-               0, 0, 1);
+  cv::Mat K =
+      (cv::Mat_<double>(3, 3) << camera.fx(), 0, camera.cx(), 0, camera.fy(), camera.cy(), 0, 0, 1);
   cv::Mat D(1, 8, CV_64F);
   for (int i = 0; i < 8; ++i) D.at<double>(0, i) = camera.dist[static_cast<std::size_t>(i)];
   auto rays = std::make_shared<std::vector<cv::Point2d>>();
@@ -51,8 +51,8 @@ TEST(StereoRectifier, UndoesDistortionAndRotation) {
   pair->rightCameraPose = mrpt::poses::CPose3DQuat(right);
   Eigen::Isometry3d T_left_right = Eigen::Isometry3d::Identity();
   T_left_right.matrix() = right.getHomogeneousMatrixVal<mrpt::math::CMatrixDouble44>().asEigen();
-  pair->imageLeft = image_of(
-      view_of_plane(texture, pair->leftCamera, Eigen::Isometry3d::Identity(), kDepth));
+  pair->imageLeft =
+      image_of(view_of_plane(texture, pair->leftCamera, Eigen::Isometry3d::Identity(), kDepth));
   pair->imageRight = image_of(view_of_plane(texture, pair->rightCamera, T_left_right, kDepth));
   pair->cameraPose = mrpt::poses::CPose3DQuat(mrpt::poses::CPose3D(0, 0, 0, 0, 0, 0));
   StereoFeatures frontend(stereo_parameters("orb", "klt"), "", true);
@@ -77,9 +77,8 @@ TEST(StereoMotion, JacobianFreeCheckOfTheEstimate) {
   std::mt19937_64 random(4);
   std::uniform_real_distribution<double> unit(-1.0, 1.0);
   std::normal_distribution<double> normal;
-  const Eigen::Isometry3d T =
-      Eigen::Translation3d(0.1, -0.05, -0.8) *
-      Eigen::AngleAxisd(0.04, Eigen::Vector3d(0.2, 1.0, -0.1).normalized());
+  const Eigen::Isometry3d T = Eigen::Translation3d(0.1, -0.05, -0.8) *
+                              Eigen::AngleAxisd(0.04, Eigen::Vector3d(0.2, 1.0, -0.1).normalized());
   const auto pairs_with = [&](double noise, int wrong) {
     std::vector<PointPair> pairs;
     for (int i = 0; i < 120; ++i) {
@@ -101,16 +100,16 @@ TEST(StereoMotion, JacobianFreeCheckOfTheEstimate) {
     }
     return pairs;
   };
-  const auto exact = estimate_stereo_motion(camera, pairs_with(0.0, 0),
-                                            Eigen::Isometry3d::Identity(), 12.84);
+  const auto exact =
+      estimate_stereo_motion(camera, pairs_with(0.0, 0), Eigen::Isometry3d::Identity(), 12.84);
   ASSERT_TRUE(exact);
   EXPECT_TRUE(exact->T_after_before.isApprox(T, 1e-9));
   EXPECT_EQ(exact->support, 120);
   double nees = 0.0;
   constexpr int kRuns = 60;
   for (int run = 0; run < kRuns; ++run) {
-    const auto noisy = estimate_stereo_motion(camera, pairs_with(0.3, 50),
-                                              Eigen::Isometry3d::Identity(), 12.84);
+    const auto noisy =
+        estimate_stereo_motion(camera, pairs_with(0.3, 50), Eigen::Isometry3d::Identity(), 12.84);
     ASSERT_TRUE(noisy);
     for (std::size_t i = 0; i < 50; ++i) EXPECT_FALSE(noisy->agrees[i]);
     const Eigen::Isometry3d error = T * noisy->T_after_before.inverse();
@@ -125,8 +124,8 @@ TEST(StereoMotion, JacobianFreeCheckOfTheEstimate) {
 }
 
 TEST(StereoMotion, NothingWithoutSupport) {
-  const StereoCamera camera{500.0, 500.0, 320.0, 240.0, 0.3, 640, 480,
-                            Eigen::Isometry3d::Identity()};
+  const StereoCamera camera{500.0, 500.0, 320.0, 240.0,
+                            0.3,   640,   480,   Eigen::Isometry3d::Identity()};
   std::vector<PointPair> pairs(40);
   std::mt19937_64 random(9);
   std::uniform_real_distribution<double> unit;

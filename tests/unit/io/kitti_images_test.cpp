@@ -63,8 +63,7 @@ TEST_F(KittiImages, RawlogHoldsPairsWithImagesBesideIt) {
   const auto steps = play(player);
   ASSERT_EQ(steps.size(), 3U);
   for (std::size_t k = 0; k < 3; ++k) {
-    const auto pair =
-        steps[k].frame->getObservationByClass<mrpt::obs::CObservationStereoImages>();
+    const auto pair = steps[k].frame->getObservationByClass<mrpt::obs::CObservationStereoImages>();
     ASSERT_TRUE(pair);
     EXPECT_TRUE(pair->imageLeft.isExternallyStored());
     EXPECT_EQ(pair->imageLeft.getWidth(), 120U);
@@ -120,8 +119,7 @@ TEST_F(KittiImages, RejectsWhatIsNoStereoData) {
 
 TEST_F(KittiImages, StopsWhenAskedTo) {
   int asked = 0;
-  const auto summary =
-      import_kitti_images(data().string(), rawlog(), [&] { return ++asked > 2; });
+  const auto summary = import_kitti_images(data().string(), rawlog(), [&] { return ++asked > 2; });
   EXPECT_FALSE(summary.complete);
   EXPECT_EQ(summary.pairs, 2);
   RawlogPlayer player(rawlog(), with_policy("strict"));

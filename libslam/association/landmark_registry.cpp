@@ -7,8 +7,12 @@
 
 namespace libslam {
 
-LandmarkRegistry::LandmarkRegistry(int confirm_after, int prune_after, std::int64_t first_number)
-    : confirm_after_(confirm_after), prune_after_(prune_after), next_number_(first_number) {}
+LandmarkRegistry::LandmarkRegistry(int confirm_after, int prune_after, std::int64_t first_number,
+                                   int forget_after)
+    : confirm_after_(confirm_after),
+      prune_after_(prune_after),
+      forget_after_(forget_after),
+      next_number_(first_number) {}
 
 std::optional<std::size_t> LandmarkRegistry::find(std::int64_t id) const {
   const auto found = by_id_.find(id);
@@ -20,7 +24,7 @@ void LandmarkRegistry::add(BlockId block, std::int64_t id,
                            std::shared_ptr<const Descriptor> appearance) {
   if (id == kNoIdentity) id = next_number_++;
   by_id_[id] = landmarks_.size();
-  landmarks_.push_back({block, id, 1, 0, confirm_after_ <= 1, std::move(appearance)});
+  landmarks_.push_back({block, id, 1, 0, confirm_after_ <= 1, std::move(appearance), 0});
 }
 
 void LandmarkRegistry::restore(const RegisteredLandmark& landmark) {
@@ -38,22 +42,35 @@ void LandmarkRegistry::record_sighting(std::size_t landmark,
   auto& seen = landmarks_[landmark];
   if (appearance) seen.appearance = std::move(appearance);
   if (++seen.times_seen >= confirm_after_) seen.confirmed = true;
+  seen.unseen = 0;
+}
+
+bool LandmarkRegistry::given_up(const RegisteredLandmark& landmark) const {
+  if (forget_after_ > 0 && landmark.unseen > forget_after_) return true;
+  return prune_after_ > 0 && !landmark.confirmed && landmark.updates > prune_after_;
 }
 
 std::vector<BlockId> LandmarkRegistry::record_update() {
-  std::vector<BlockId> given_up;
+  std::vector<BlockId> gone;
   for (auto& landmark : landmarks_) {
     ++landmark.updates;
-    if (prune_after_ > 0 && !landmark.confirmed && landmark.updates > prune_after_)
-      given_up.push_back(landmark.block);
+    ++landmark.unseen;
+    if (given_up(landmark)) gone.push_back(landmark.block);
   }
-  if (given_up.empty()) return given_up;
-  std::erase_if(landmarks_, [this](const RegisteredLandmark& landmark) {
-    return !landmark.confirmed && landmark.updates > prune_after_;
-  });
+  if (gone.empty()) return gone;
+  std::erase_if(landmarks_,
+                [this](const RegisteredLandmark& landmark) { return given_up(landmark); });
   by_id_.clear();
   for (std::size_t i = 0; i < landmarks_.size(); ++i) by_id_[landmarks_[i].id] = i;
-  return given_up;
+  return gone;
+}
+
+std::vector<BlockId> LandmarkRegistry::clear() {
+  std::vector<BlockId> gone;
+  for (const auto& landmark : landmarks_) gone.push_back(landmark.block);
+  landmarks_.clear();
+  by_id_.clear();
+  return gone;
 }
 
 }  // namespace libslam

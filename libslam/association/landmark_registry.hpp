@@ -20,14 +20,17 @@ struct RegisteredLandmark {
   int updates = 0;  ///< updates of the filter since the landmark was added
   bool confirmed = false;
   std::shared_ptr<const Descriptor> appearance = nullptr;  ///< as it was seen last; null: not known
+  int unseen = 0;  ///< updates of the filter since the last sighting
 };
 
 /// A landmark starts provisional, is confirmed after `confirm_after` sightings and is given up when
-/// that has not happened within `prune_after` updates (0: never given up).
+/// that has not happened within `prune_after` updates (0: never given up). Any landmark is given up
+/// that was not seen in `forget_after` updates in a row (0: never).
 class LandmarkRegistry {
  public:
   /// `first_number`: where running numbers begin, beyond every identity of the log.
-  LandmarkRegistry(int confirm_after, int prune_after, std::int64_t first_number = 0);
+  LandmarkRegistry(int confirm_after, int prune_after, std::int64_t first_number = 0,
+                   int forget_after = 0);
 
   std::span<const RegisteredLandmark> landmarks() const { return landmarks_; }
   std::size_t size() const { return landmarks_.size(); }
@@ -48,9 +51,13 @@ class LandmarkRegistry {
                        std::shared_ptr<const Descriptor> appearance = nullptr);
   /// Counts one update of the filter; removes and returns the landmarks to give up.
   std::vector<BlockId> record_update();
+  /// Removes and returns all landmarks.
+  std::vector<BlockId> clear();
 
  private:
-  int confirm_after_, prune_after_;
+  bool given_up(const RegisteredLandmark& landmark) const;
+
+  int confirm_after_, prune_after_, forget_after_;
   std::int64_t next_number_;
   std::vector<RegisteredLandmark> landmarks_;
   std::map<std::int64_t, std::size_t> by_id_;  // identities of the log and running numbers

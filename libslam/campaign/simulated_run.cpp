@@ -11,8 +11,8 @@
 #include <libslam/pipeline/mrpt_filter.hpp>
 #include <libslam/pipeline/pipeline.hpp>
 #include <libslam/pipeline/simulation.hpp>
-#include <libslam/result/metrics.hpp>
 #include <libslam/result/step_statistics.hpp>
+#include <libslam/result/truth_comparison.hpp>
 #include <libslam/result/truth_json.hpp>
 #include <libslam/simulation/planar_pose.hpp>
 

@@ -103,6 +103,9 @@ void EkfSlam::propagate(const MotionAction* action) {
   const PhaseTimer timer(times_, Phase::kPredict);
   if (action == nullptr) {
     state_.covariance().add_noise(state_.offset(pose_), parts_.cov_no_odometry);
+    if (parts_.implied_input)
+      parts_.implied_input->move(BlockMatrix::Identity(state_.size(pose_), state_.size(pose_)),
+                                 parts_.cov_no_odometry);
     linearizer_.stood(state_, pose_);
     return;
   }
@@ -113,6 +116,8 @@ void EkfSlam::propagate(const MotionAction* action) {
   if (disturbed())
     parts_.disturbance->moved(state_.estimate(pose_), step_.estimate, step_.cov_noise);
   ekf_.propagate(state_, step_);
+  if (parts_.implied_input)
+    parts_.implied_input->move(step_.wrt.begin()->jacobian, step_.cov_noise);
   linearizer_.moved(state_, pose_);
   calibration_.diffuse(state_, action->dt);
 }
@@ -147,6 +152,7 @@ UpdateOutcome EkfSlam::update(std::span<const Feature> features) {
   }
   associate(features);
   if (parts_.disturbance) respond(features, outcome);
+  if (parts_.implied_input) reject_impossible(features, outcome);
   correct(features, outcome);
   add_landmarks(features, outcome);
   return outcome;
@@ -216,6 +222,23 @@ void EkfSlam::lose_pose() {
   if (!parts_.disturbance)
     throw std::invalid_argument("a filter without a response to disturbances keeps its pose");
   parts_.disturbance->lose();
+}
+
+void EkfSlam::reject_impossible(std::span<const Feature> features, UpdateOutcome& outcome) {
+  if (used_.empty()) return;
+  ekf_.expect(state_, pose_, accepted(), joint_);
+  const bool impossible = parts_.implied_input->impossible(joint_);
+  parts_.implied_input->restart();
+  if (!impossible) return;
+  outcome.event = "impossible_motion";
+  for (Verdict& verdict : verdicts_) {
+    const bool has_partner =
+        verdict.outcome == Outcome::kPaired || verdict.outcome == Outcome::kGated;
+    if (has_partner) verdict.outcome = landmarks_given_ ? Outcome::kGated : Outcome::kNew;
+  }
+  if (!landmarks_given_)
+    for (const BlockId block : parts_.registry.clear()) state_.remove(block);
+  linearize_pairs(features);
 }
 
 void EkfSlam::correct(std::span<const Feature> features, UpdateOutcome& outcome) {

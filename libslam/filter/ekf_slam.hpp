@@ -24,6 +24,7 @@
 #include <libslam/filter/selected_pairs.hpp>
 #include <libslam/measurement/measurement_model.hpp>
 #include <libslam/motion/motion_model.hpp>
+#include <libslam/policy/implied_input.hpp>
 #include <libslam/policy/noise_policy.hpp>
 #include <libslam/policy/process_scale.hpp>
 
@@ -42,6 +43,7 @@ struct EkfSlamParts {
   std::unique_ptr<NoisePolicy> noise;              ///< null: R as the features bring it
   std::unique_ptr<ProcessScale> process;           ///< null: Q as the motion model says
   std::optional<DisturbanceResponse> disturbance;  ///< absent: every observation is believed
+  std::optional<ImpliedInput> implied_input;       ///< absent: any motion is possible
   LandmarkRegistry registry{1, 0};
   std::optional<MapStart> map;  ///< to start in; needs no point of linearization but the estimate
   BlockVector start;  ///< start pose, storage of the motion model's pose; empty: the origin
@@ -55,7 +57,8 @@ struct UpdateOutcome {
   int nis_dof = 0;
   int accepted = 0, gated = 0, ambiguous = 0, new_landmarks = 0;
   std::vector<Verdict> verdicts;  ///< one per feature
-  std::string event;              ///< what a run should tell: "disturbance", "lost", "relocalized"
+  /// What a run should tell: "disturbance", "lost", "relocalized", "impossible_motion".
+  std::string event;
 
   UpdateOutcome& operator+=(const UpdateOutcome& other);
 };
@@ -112,6 +115,9 @@ class EkfSlam {
   void linearize_pairs(std::span<const Feature> features);
   void respond(std::span<const Feature> features, UpdateOutcome& outcome);
   void start_again_at(const FoundPose& found, std::span<const Feature> features);
+  /// Gives up an observation that implies an impossible motion; the landmarks start anew, unless
+  /// they are given.
+  void reject_impossible(std::span<const Feature> features, UpdateOutcome& outcome);
   void correct(std::span<const Feature> features, UpdateOutcome& outcome);
   void add_landmarks(std::span<const Feature> features, UpdateOutcome& outcome);
 
@@ -131,6 +137,7 @@ class EkfSlam {
   std::vector<LinearizedMeasurement> measured_;  // accepted ones, then rejected ones
   std::vector<std::size_t> used_;                // the features behind the accepted ones
   std::vector<Postfit> postfits_;
+  JointInnovation joint_;
   Initialization initialization_;
   PhaseTimes times_;
 };

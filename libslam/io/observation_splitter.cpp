@@ -98,6 +98,12 @@ mrpt::obs::CSensoryFrame::Ptr ObservationSplitter::take_frame() {
 void ObservationSplitter::emit_part(double time, mrpt::obs::CSensoryFrame::Ptr frame, Cut& done) {
   const double span = end_->time - begin_->time;
   const double fraction = span > 0.0 ? (time - begin_->time) / span : 1.0;
+  if (begin_->twist) {
+    emit(time, nullptr, (fraction - done.fraction) * span, std::move(frame));
+    ready_.back().twist = HeldTwist{*begin_->twist, span};
+    done.fraction = fraction;
+    return;
+  }
   const Eigen::Vector3d interval = [&] {
     const CPose2D difference = to_pose(end_->pose) - to_pose(begin_->pose);
     return Eigen::Vector3d(difference.x(), difference.y(), difference.phi());

@@ -14,13 +14,15 @@
 
 namespace libslam {
 
-/// One odometry reading: a pose in the odometry frame, absolute.
+/// One odometry reading: a pose in the odometry frame, absolute, or a velocity in space.
 struct OdometryReading {
   double time = 0.0;                               ///< [s]
   Eigen::Vector3d pose = Eigen::Vector3d::Zero();  ///< x [m], y [m], phi [rad]
   std::optional<Eigen::Vector3d> velocity;         ///< vx, vy [m/s], omega [rad/s]: mean since the
                                                    ///< previous reading
   std::optional<std::array<std::int32_t, 2>> ticks;  ///< absolute counters left, right; may wrap
+  /// Velocity of the robot that holds until the next reading (HeldTwist); instead of a pose.
+  std::optional<Eigen::Matrix<double, 6, 1>> twist;
 };
 
 /// Places every observation at its time stamp inside the odometry.
@@ -29,8 +31,9 @@ struct OdometryReading {
 /// (constant velocity), so that the increments of its parts compose to the difference of the
 /// absolute poses. All parts carry the mean velocity that the log gave for the interval. Ticks are
 /// cut by rounding the running total: their sum is exact and no cut is off by more than half a
-/// tick. Observations of equal time become one frame; an observation at the time of a reading
-/// shares its step.
+/// tick. Of velocities in space every part carries the reading that began the interval.
+/// Observations of equal time become one frame; an observation at the time of a reading shares its
+/// step.
 ///
 /// An interval is released when the reading after it arrives: an observation may stand in the file
 /// up to one reading late. Observations after the last reading get no motion, and so do those

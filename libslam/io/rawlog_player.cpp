@@ -6,6 +6,7 @@
 #include <mrpt/obs/CObservationOdometry.h>
 #include <mrpt/obs/CRawlog.h>
 
+#include <libslam/io/body_velocity.hpp>
 #include <libslam/io/mrpt_fields.hpp>
 #include <libslam/io/rawlog_player.hpp>
 
@@ -20,11 +21,10 @@ using mrpt::obs::CObservationOdometry;
 /// it.
 constexpr std::size_t kFlavourEntries = 16;
 
-OdometryReading reading_of(CObservationOdometry& odometry, double time) {
+OdometryReading reading_of(CObservationOdometry& odometry) {
   mend_flag(odometry.hasVelocities);
   mend_flag(odometry.hasEncodersInfo);
   OdometryReading reading;
-  reading.time = time;
   reading.pose = {odometry.odometry.x(), odometry.odometry.y(), odometry.odometry.phi()};
   const auto& v = odometry.velocityLocal;
   if (odometry.hasVelocities && std::isfinite(v.vx) && std::isfinite(v.vy) &&
@@ -118,12 +118,20 @@ bool RawlogPlayer::is_sensor_path(const CObservation& observation) const {
   return !label.empty() && label == observation.sensorLabel;
 }
 
+bool RawlogPlayer::is_velocity(const CObservation& observation) const {
+  const std::string& label = options_.input.odometry_label;
+  return options_.input.odometry == "twist" &&
+         dynamic_cast<const mrpt::obs::CObservationIMU*>(&observation) != nullptr &&
+         (label.empty() || label == observation.sensorLabel);
+}
+
 bool RawlogPlayer::wanted(const CObservation& observation) const {
   const auto matches = [&](const std::string& label) {
     return label.empty() || label == observation.sensorLabel;
   };
   if (dynamic_cast<const CObservationOdometry*>(&observation))
-    return is_sensor_path(observation) || (!is_pair_log_ && matches(options_.input.odometry_label));
+    return is_sensor_path(observation) || (!is_pair_log_ && options_.input.odometry != "twist" &&
+                                           matches(options_.input.odometry_label));
   if (dynamic_cast<const CObservationBearingRange*>(&observation))
     return matches(options_.input.sensor_label);
   return dynamic_cast<const mrpt::obs::CObservationComment*>(&observation) == nullptr;
@@ -156,6 +164,10 @@ void RawlogPlayer::add_observation(const CObservation::Ptr& observation, const R
     add_odometry(*odometry, entry);
     return;
   }
+  if (is_velocity(*observation)) {
+    add_velocity(dynamic_cast<const mrpt::obs::CObservationIMU&>(*observation), entry);
+    return;
+  }
   const double present = std::max(splitter_.open_time(), splitter_.last_reading_time());
   const auto stamp = stamp_seconds(observation->timestamp);
   double time = stamp.value_or(std::isfinite(present) ? present : 0.0);
@@ -171,20 +183,35 @@ void RawlogPlayer::add_observation(const CObservation::Ptr& observation, const R
 }
 
 void RawlogPlayer::add_odometry(CObservationOdometry& odometry, const RawlogEntry& entry) {
-  const double last = splitter_.last_reading_time();
-  const auto stamp = stamp_seconds(odometry.timestamp);
-  double time = stamp.value_or(std::isfinite(last) ? last : 0.0);
-  OdometryReading reading = reading_of(odometry, time);
+  const OdometryReading reading = reading_of(odometry);
   // Poses are absolute: what a missing reading would have said is part of the next one.
   if (!reading.pose.allFinite()) {
     intake_.skip(entry.number, "odometry is not finite");
     return;
   }
+  place_reading(reading, stamp_seconds(odometry.timestamp), entry);
+}
+
+void RawlogPlayer::add_velocity(const mrpt::obs::CObservationIMU& imu, const RawlogEntry& entry) {
+  OdometryReading reading;
+  reading.twist = body_velocity(imu);
+  if (!reading.twist || !reading.twist->allFinite()) {
+    intake_.skip(entry.number, reading.twist ? "velocity is not finite"
+                                             : "IMU without linear velocities and turn rates");
+    return;
+  }
+  place_reading(reading, stamp_seconds(imu.timestamp), entry);
+}
+
+void RawlogPlayer::place_reading(OdometryReading reading, std::optional<double> stamp,
+                                 const RawlogEntry& entry) {
+  const double last = splitter_.last_reading_time();
+  reading.time = stamp.value_or(std::isfinite(last) ? last : 0.0);
   if (!stamp)
     intake_.fill_in(entry.number, "no valid time stamp");
-  else if (time < last) {
-    if (!intake_.may_repair(entry.number,
-                            "odometry goes back in time by " + std::to_string(last - time) + " s"))
+  else if (reading.time < last) {
+    if (!intake_.may_repair(entry.number, "odometry goes back in time by " +
+                                              std::to_string(last - reading.time) + " s"))
       return;
     reading.time = last;
   }
@@ -196,13 +223,14 @@ void RawlogPlayer::account(LogStep& step) {
   if (index_ == 0) first_time_ = step.time;
   step.index = index_++;
   summary.duration_s = step.time - first_time_;
-  if (step.action) {
+  const bool moves = step.action || step.twist;
+  if (moves) {
     ++summary.actions;
     any_motion_ = true;
   }
   if (!step.frame) return;
   summary.observations += static_cast<std::int64_t>(step.frame->size());
-  if (!step.action && !any_motion_) summary.leading_frame = true;
+  if (!moves && !any_motion_) summary.leading_frame = true;
 }
 
 }  // namespace libslam

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include <mrpt/obs/CObservationIMU.h>
 #include <mrpt/obs/CObservationOdometry.h>
 
 #include <libslam/config/parameters.hpp>
@@ -32,7 +33,8 @@ struct PlayerOptions {
 /// Given   (action, frame) pairs, one step for each pair (PairAssembler);
 /// given   observations one after another, or frames without actions, with absolute odometry among
 ///         them, one step for each odometry reading and each observation time
-///         (ObservationSplitter).
+///         (ObservationSplitter); with `input.odometry` twist the velocities of CObservationIMU
+///         take the place of odometry, and each holds until the next.
 /// The flavour is decided by whether an action is among the first entries; entries of the other
 /// flavour are left out with a warning, since using both would count the motion twice.
 ///
@@ -68,6 +70,12 @@ class RawlogPlayer {
   void add_observation(const mrpt::obs::CObservation::Ptr& observation, const RawlogEntry& entry,
                        std::uint64_t bytes);
   void add_odometry(mrpt::obs::CObservationOdometry& odometry, const RawlogEntry& entry);
+  void add_velocity(const mrpt::obs::CObservationIMU& imu, const RawlogEntry& entry);
+  /// Gives a reading its time and its place in the log.
+  void place_reading(OdometryReading reading, std::optional<double> stamp,
+                     const RawlogEntry& entry);
+  /// The velocities of this observation drive the log.
+  bool is_velocity(const mrpt::obs::CObservation& observation) const;
   void add_frame(const RawlogEntry& entry);
   bool is_sensor_path(const mrpt::obs::CObservation& observation) const;
   bool wanted(const mrpt::obs::CObservation& observation) const;

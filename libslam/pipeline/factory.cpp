@@ -149,7 +149,10 @@ EkfSlamParts make_filter_parts(const Parameters& p, const TrueState* truth) {
   parts.noise = make_noise_policy(p);
   parts.registry = LandmarkRegistry(
       p.association.confirm_after, p.association.prune_after,
-      p.association.uses_identities() && p.association.method != "known" ? kBeyondIdentities : 0);
+      p.association.uses_identities() && p.association.method != "known" ? kBeyondIdentities : 0,
+      p.association.forget_after);
+  if (p.policies.implied_input.enabled)
+    parts.implied_input.emplace(p.policies.implied_input.probability);
   const BlockSpec pose = parts.motion->pose_spec();
   parts.map = make_map_start(p.map);
   if (parts.map && !parts.map->at_saved_pose) parts.start = start_pose(pose, p.map);

@@ -67,6 +67,12 @@ void require_folder_of_map(const std::filesystem::path& file) {
     throw std::runtime_error("cannot write " + file.string() + ": no directory " + folder.string());
 }
 
+/// Surveyed landmarks are in the frame of the truth, and so is a run that localizes among them.
+Placement placement_in(const MapParameters& map) {
+  const bool surveyed = !map.file.empty() && map.mode == "localize" && !is_saved_map(map.file);
+  return surveyed ? Placement::none : Placement::first;
+}
+
 class Run {
  public:
   explicit Run(const RunRequest& request)
@@ -74,7 +80,9 @@ class Run {
         player_(request.rawlog, player_options(request)),
         pipeline_(request.parameters),
         recorder_({request.directory, request.force, request.parameters.output.trajectory_period_s,
-                   request.parameters.output.report}) {
+                   request.parameters.output.report,
+                   request.parameters.policies.implied_input.enabled ||
+                       request.parameters.policies.disturbance.response != "none"}) {
     replace_file(request.directory / "config.yaml", to_yaml(request.parameters));
   }
 
@@ -194,6 +202,7 @@ class Run {
     summary.threads = request_.threads;
     summary.exit_code = exit_code_;
     summary.status = status_;
+    summary.result.placement = placement_in(request_.parameters.map);
     summary.input = {request_.rawlog,
                      input.entries,
                      input.actions,
@@ -206,6 +215,9 @@ class Run {
                      {}};
     if (const std::string& map = request_.parameters.map.file; !map.empty()) {
       summary.input.map_file = map;
+      // Surveyed landmarks stand in the frame of the truth, and so does a run among them.
+      if (std::filesystem::path(map).extension() == ".csv")
+        summary.result.placement = Placement::none;
       summary.input.map_sha256 = sha256_of_file(map);
     }
     auto& warnings = summary.input.warnings;

@@ -41,6 +41,13 @@ void add_to_block(const GaussianState::MutableBlock& block, const VectorRef& del
   boxplus(block.spec, x, delta.segment(block.offset, block.size));
 }
 
+/// A point without a correction: its xi takes back the turn about the origin, exactly, and the
+/// exponential leaves it where it is.
+bool stays(const GaussianState::MutableBlock& block, const VectorRef& delta) {
+  return block.spec.role == WorldRole::kPoint &&
+         delta.segment(block.offset, block.size).isZero(0.0);
+}
+
 }  // namespace
 
 ChartChange StandardFrame::retract(GaussianState& state, BlockId, const VectorRef& delta) {
@@ -89,9 +96,7 @@ ChartChange RightInvariantFrame::retract_planar(GaussianState& state, BlockId po
       continue;
     }
     auto& x = block.estimate;
-    // xi = -J x turn is the turn about the origin taken back: what has no correction stays,
-    // exactly.
-    if (role == WorldRole::kPoint && delta.segment<2>(block.offset).isZero(0.0)) continue;
+    if (stays(block, delta)) continue;
     const Eigen::Vector2d before = x.head<2>();
     const Eigen::Vector2d xi = delta.segment<2>(block.offset) - rotated_90(before) * turn;
     const Eigen::Vector2d after = exponential(before, xi);
@@ -119,6 +124,7 @@ ChartChange RightInvariantFrame::retract_spatial(GaussianState& state, BlockId p
     if (block.spec.chart == Chart::kSE2 || block.size < 3)
       throw std::invalid_argument("block '" + block.spec.name +
                                   "' is planar, the robot moves in space");
+    if (stays(block, delta)) continue;
     auto& x = block.estimate;
     const Eigen::Vector3d before = x.head<3>();
     const Eigen::Vector3d xi = delta.segment<3>(block.offset) + before.cross(theta);

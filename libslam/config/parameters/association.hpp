@@ -14,6 +14,7 @@ struct AssociationParameters {
   double new_landmark_probability = 0.999;
   int confirm_after = 1;
   int prune_after = 0;
+  int forget_after = 0;
   double appearance_distance = 0.3;
   double appearance_ratio = 0.8;
 
@@ -52,6 +53,12 @@ struct AssociationParameters {
     v.value("prune_after", prune_after,
             {"1", "A landmark that is not confirmed within this many updates is removed; 0: never.",
              0});
+    v.value(
+        "forget_after", forget_after,
+        {"1",
+         "Any landmark that is not seen in so many updates in a row is removed, a confirmed one "
+         "too; 0: never. For odometry from tracked points, whose identities never come back.",
+         0});
     v.value("appearance_distance", appearance_distance,
             {"1",
              "Largest distance of two descriptors of one landmark: share of the bits, or of the "

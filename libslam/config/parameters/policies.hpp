@@ -3,6 +3,7 @@
 
 #include <libslam/config/description.hpp>
 #include <libslam/config/parameters/disturbance.hpp>
+#include <libslam/config/parameters/implied_input.hpp>
 #include <libslam/config/parameters/noise_adaptation.hpp>
 
 namespace libslam {
@@ -14,6 +15,7 @@ struct PolicyParameters {
   NoiseAdaptationParameters noise_adaptation;
   ProcessAdaptationParameters process_adaptation;
   DisturbanceParameters disturbance;
+  ImpliedInputParameters implied_input;
 
   void describe(auto& v) {
     v.value("update_period_s", update_period_s,
@@ -25,6 +27,7 @@ struct PolicyParameters {
     v.section("noise_adaptation", noise_adaptation);
     v.section("process_adaptation", process_adaptation);
     v.section("disturbance", disturbance);
+    v.section("implied_input", implied_input);
   }
 };
 

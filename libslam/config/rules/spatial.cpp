@@ -42,6 +42,11 @@ void check_spatial(const Parameters& p, Conflicts& conflicts) {
                          "nothing else does"});
   }
   const bool planar_map = !points || p.measurement.stereo.landmark_dimension == 2;
+  const auto& implied = p.policies.implied_input;
+  if (implied.enabled && !(implied.probability > 0.0 && implied.probability < 1.0)) {
+    conflicts.push_back(
+        {{"policies.implied_input.probability"}, "a test at 0 rejects everything, at 1 nothing"});
+  }
   if (p.filter.linearization != "estimate" && !planar_map) {
     conflicts.push_back({{"filter.linearization", "measurement.stereo.landmark_dimension"},
                          "another point than the estimate is derived for planar landmarks only"});

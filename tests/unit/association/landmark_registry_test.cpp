@@ -53,3 +53,28 @@ TEST(LandmarkRegistry, GoesOnFromAnEarlierRun) {
   EXPECT_EQ(registry.next_number(), 109);
   EXPECT_EQ(registry.record_update(), std::vector<BlockId>{BlockId{5}});
 }
+
+TEST(LandmarkRegistry, ForgetsWhatIsNotSeenForSomeUpdates) {
+  LandmarkRegistry registry(1, 0, 0, 2);
+  registry.add(BlockId{1}, 10);
+  registry.add(BlockId{2}, 20);
+  EXPECT_TRUE(registry.record_update().empty());  // the update that added them
+  for (int update = 0; update < 2; ++update) {
+    registry.record_sighting(0);
+    EXPECT_TRUE(registry.record_update().empty()) << update;
+  }
+  registry.record_sighting(0);
+  EXPECT_EQ(registry.record_update(), std::vector<BlockId>{BlockId{2}});
+  EXPECT_EQ(*registry.find(10), 0U);
+  EXPECT_FALSE(registry.find(20).has_value());
+}
+
+TEST(LandmarkRegistry, ClearsToAnEmptyMapThatGoesOnNumbering) {
+  LandmarkRegistry registry(1, 0, 5);
+  registry.add(BlockId{1}, kNoIdentity);
+  EXPECT_EQ(registry.clear(), std::vector<BlockId>{BlockId{1}});
+  EXPECT_EQ(registry.size(), 0U);
+  EXPECT_FALSE(registry.find(5).has_value());
+  registry.add(BlockId{2}, kNoIdentity);
+  EXPECT_EQ(registry.landmarks()[0].id, 6);
+}

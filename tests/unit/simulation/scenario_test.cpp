@@ -25,7 +25,7 @@ std::string message_of(Action action) {
 }
 
 TEST(Scenario, EveryShippedOneIsValidAndDrives) {
-  for (const char* name : {"sim_webmap", "sim_house", "sim_differential"}) {
+  for (const char* name : {"sim_webmap", "sim_house", "sim_differential", "sim_stereo_features"}) {
     Scenario s = load_scenario(std::string(LIBSLAM_CONFIG_DIR "/") + name + ".yaml");
     EXPECT_NO_THROW(validate(s)) << name;
     s.drive.max_duration_s = 2.0;

@@ -180,10 +180,11 @@ void EkfSlam::linearize_pairs(std::span<const Feature> features) {
       linearizer_.linearize(*parts_.measurement, state_, pose_, landmark, features[i],
                             measured_.emplace_back());
       if (outcome == Outcome::kPaired) used_.push_back(i);
+      if (!measured_.back().innovation.allFinite()) measured_.pop_back();  // out of sight
     }
   };
   linearize(Outcome::kPaired);
-  if (parts_.disturbance) linearize(Outcome::kGated);
+  if (parts_.disturbance || parts_.implied_input) linearize(Outcome::kGated);
 }
 
 void EkfSlam::respond(std::span<const Feature> features, UpdateOutcome& outcome) {
@@ -201,8 +202,12 @@ void EkfSlam::respond(std::span<const Feature> features, UpdateOutcome& outcome)
 }
 
 void EkfSlam::reject_impossible(std::span<const Feature> features, UpdateOutcome& outcome) {
-  if (used_.empty()) return;
-  ekf_.expect(state_, pose_, accepted(), joint_);
+  if (measured_.empty()) return;
+  // Rejected innovations count where they are many: a tracker that froze fails every gate once the
+  // odometry is good enough.
+  const bool most_rejected = 2 * used_.size() <= measured_.size();
+  ekf_.expect(state_, pose_, most_rejected ? std::span<const LinearizedMeasurement>(measured_) : accepted(),
+              joint_);
   const bool impossible = parts_.implied_input->impossible(joint_);
   parts_.implied_input->restart();
   if (!impossible) return;

@@ -206,7 +206,8 @@ void EkfSlam::reject_impossible(std::span<const Feature> features, UpdateOutcome
   // Rejected innovations count where they are many: a tracker that froze fails every gate once the
   // odometry is good enough.
   const bool most_rejected = 2 * used_.size() <= measured_.size();
-  ekf_.expect(state_, pose_, most_rejected ? std::span<const LinearizedMeasurement>(measured_) : accepted(),
+  ekf_.expect(state_, pose_,
+              most_rejected ? std::span<const LinearizedMeasurement>(measured_) : accepted(),
               joint_);
   const bool impossible = parts_.implied_input->impossible(joint_);
   parts_.implied_input->restart();

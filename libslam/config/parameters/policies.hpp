@@ -3,8 +3,8 @@
 
 #include <libslam/config/description.hpp>
 #include <libslam/config/parameters/disturbance.hpp>
-#include <libslam/config/parameters/noise_adaptation.hpp>
 #include <libslam/config/parameters/implied_input.hpp>
+#include <libslam/config/parameters/noise_adaptation.hpp>
 
 namespace libslam {
 

@@ -48,10 +48,10 @@ struct ConstellationOptions {
   /// Density of objects that are not in the map, as a part of the density of the map.
   double unmapped_density_ratio = 1.0;
   std::size_t least_pairs = 4;
-  double least_paired_fraction = 0.5;  ///< of what is seen
+  double least_paired_fraction = 0.4;  ///< of what is seen
   double pair_probability = 0.999;     ///< chi-square gate of a pair
   double fit_probability = 0.999;      ///< chi-square gate of the fit of all pairs
-  double least_log_odds = 11.5;        ///< against all else together; 11.5: 1 in 100 000
+  double least_log_odds = 9.2;         ///< against all else together; 9.2: 1 in 10 000
   std::size_t budget = 12'000;         ///< poses that are voted on, most
 };
 

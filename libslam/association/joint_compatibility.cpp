@@ -211,6 +211,13 @@ void JointCompatibility::conclude(std::vector<Verdict>& verdicts) {
       verdicts[features_[depth].feature].outcome = Outcome::kNew;
 }
 
+std::vector<Pairing> JointCompatibility::hypothesis() const {
+  std::vector<Pairing> result;
+  for (const int pair : best_.pair)
+    if (pair != kNone) result.push_back(pairs_[static_cast<std::size_t>(pair)]);
+  return result;
+}
+
 bool JointCompatibility::beyond_all_landmarks(const Candidates& candidates) {
   for (std::size_t pair = candidates.first; pair < candidates.end; ++pair)
     if (joint_.extend(pair).mahalanobis2 <= new_landmark_gate_) return false;

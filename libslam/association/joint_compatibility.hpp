@@ -15,7 +15,7 @@
 #include <vector>
 
 #include <libslam/association/associator.hpp>
-#include <libslam/association/joint_innovation.hpp>
+#include <libslam/association/incremental_innovation.hpp>
 
 namespace libslam {
 
@@ -23,8 +23,9 @@ struct JointCompatibilityOptions {
   double gate_probability = 0.99;  ///< of a pair, and of the pairs of a hypothesis together
   double new_landmark_probability = 0.999;  ///< beyond it from every landmark: a new one
   int dimension = 2;                        ///< rows of one measurement
-  /// Most 2 x 2 products of one frame, a measure of time that is the same on every machine.
-  std::size_t budget = 400'000;
+  /// Most blocks of factors computed for one frame: bounds the time, and cuts off at the same place
+  /// on every machine. 300 000 are about 12 ms.
+  std::size_t budget = 300'000;
 };
 
 /// Features with the fewest candidates come first, and their candidates in the order of their
@@ -35,7 +36,7 @@ struct JointCompatibilityOptions {
 /// A pair that another hypothesis denies which is as large and has at least one
 /// `kLikelihoodRatio`th of the likelihood is not used: its feature is ambiguous. The other features
 /// without a pair are new if, given the pairs of the hypothesis, they are beyond the new-landmark
-/// gate of every landmark, otherwise ambiguous.
+/// gate of every landmark, otherwise ambiguous; after a search that was cut off all are ambiguous.
 class JointCompatibility final : public Associator {
  public:
   static constexpr double kLikelihoodRatio = 20.0;  ///< as in NearestNeighbour
@@ -46,7 +47,9 @@ class JointCompatibility final : public Associator {
   void associate(std::span<const Feature> features, const LandmarkRegistry& registry,
                  Compatibility& compatibility, std::vector<Verdict>& verdicts) override;
 
-  /// Of the last frame: whether the search was cut off.
+  // Of the last frame: the best hypothesis, with the pairs that were not used because another
+  // denies them, and whether the search was cut off.
+  std::vector<Pairing> hypothesis() const;
   bool exhausted() const { return spent_ > options_.budget; }
 
  private:
@@ -94,7 +97,7 @@ class JointCompatibility final : public Associator {
   std::vector<bool> taken_;      // landmarks
   std::vector<bool> contested_;  // features
   std::vector<Option> open_;     // of all depths
-  JointInnovation joint_;
+  IncrementalInnovation joint_;
   Hypothesis current_, best_;
   std::vector<Hypothesis> rivals_;
   std::size_t spent_ = 0;

@@ -19,7 +19,7 @@ struct PoseVote {
 
 struct PoseVoteOptions {
   std::size_t least_votes = 4;
-  double least_fraction = 0.5;  ///< of those who vote
+  double least_fraction = 0.4;  ///< of those who vote
   std::size_t budget = 12'000;  ///< poses that are tried, most
 };
 

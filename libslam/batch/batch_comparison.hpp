@@ -9,7 +9,7 @@
 #include <libslam/batch/batch_optimizer.hpp>
 #include <libslam/batch/filter_replay.hpp>
 #include <libslam/data/ground_truth.hpp>
-#include <libslam/result/metrics.hpp>
+#include <libslam/result/truth_comparison.hpp>
 
 namespace libslam {
 

@@ -13,6 +13,9 @@ FilterReplay replay_filter(const std::string& rawlog, const Parameters& paramete
   PlayerOptions options;
   options.input = parameters.input;
   RawlogPlayer player(rawlog, options);
+  if (!parameters.map.file.empty())
+    throw std::invalid_argument("a batch starts without a map, the run started in " +
+                                parameters.map.file);
   const EkfSlamParts parts = make_filter_parts(parameters);
   if (parts.motion->pose_spec().chart != Chart::kSE2)
     throw std::invalid_argument("a batch is planar; motion.model " + parameters.motion.model +

@@ -23,7 +23,8 @@ struct FilterReplay {
 
 /// Plays `rawlog` through the filter of `parameters`, as `run_rawlog` does, for at most `max_steps`
 /// steps. Throws InputError where the log cannot be read, std::invalid_argument where the log lacks
-/// a field that the configuration asks for, or the configuration has no landmarks.
+/// a field that the configuration asks for, or the configuration has no landmarks or
+/// starts in a map, which would be a prior that the batch does not have.
 FilterReplay replay_filter(const std::string& rawlog, const Parameters& parameters,
                            std::int64_t max_steps = std::numeric_limits<std::int64_t>::max());
 

@@ -25,6 +25,7 @@ struct VariantOutcome {
   std::string status;  ///< "done", "diverged", or "failed: why"
   /// `truth`, `health`, `timing` as in run.json, `calibration` as its result.calibration, and
   /// `noise`: name -> adapted and configured sigma at the end.
+  /// `recovery` (campaign/recovery.hpp) where the robot is kidnapped.
   nlohmann::ordered_json figures;
   ErrorSums sums;
   /// Of the pose at every observation of the log, the same times in all runs of a point; NaN where

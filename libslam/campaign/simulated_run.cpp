@@ -6,12 +6,13 @@
 #include <optional>
 #include <stdexcept>
 
+#include <libslam/campaign/recovery.hpp>
 #include <libslam/campaign/simulated_run.hpp>
 #include <libslam/pipeline/mrpt_filter.hpp>
 #include <libslam/pipeline/pipeline.hpp>
 #include <libslam/pipeline/simulation.hpp>
-#include <libslam/result/metrics.hpp>
 #include <libslam/result/step_statistics.hpp>
+#include <libslam/result/truth_comparison.hpp>
 #include <libslam/result/truth_json.hpp>
 #include <libslam/simulation/planar_pose.hpp>
 
@@ -70,10 +71,12 @@ StepRecord start_of(const LogStep& step) {
 /// A filter, what it has estimated so far, and the verdict.
 class Lane {
  public:
-  Lane(const Variant& variant, const TrueState& truth, double diverged_beyond)
+  Lane(const Variant& variant, const TrueState& truth, double diverged_beyond,
+       const KidnapParameters& kidnap)
       : identity_(variant.parameters.association.uses_identities() ? LandmarkIdentity::known
                                                                    : LandmarkIdentity::unknown),
-        diverged_beyond_(diverged_beyond) {
+        diverged_beyond_(diverged_beyond),
+        recovery_(kidnap) {
     attempt([&] { contestant_.emplace(variant, truth); });
   }
 
@@ -122,7 +125,9 @@ class Lane {
     if (path_.empty() || observed) {
       path_.push_back({record.index, record.time, record.pose, record.cov});
       observation_of_pose_.push_back(observations_ - 1);
+      recovery_.observe(record.time - path_.front().time, error);
     }
+    if (record.event == "disturbance") ++disturbances_;
   }
 
   void describe(const GroundTruth& truth, bool with_series, VariantOutcome& outcome) const {
@@ -138,6 +143,9 @@ class Lane {
     if (summary.health.nis_in_95) health["nis_in_95"] = *summary.health.nis_in_95;
     if (summary.health.gated_fraction) health["gated_fraction"] = *summary.health.gated_fraction;
     health["landmarks"] = map.size();
+    health["disturbances"] = disturbances_;
+    if (Json recovery = recovery_.figures(); !recovery.is_null())
+      outcome.figures["recovery"] = std::move(recovery);
     for (const CalibrationValue& value : calibration)
       outcome.figures["calibration"][value.name] = {
           {"mean", value.mean}, {"sigma", value.sigma}, {"observable", value.observable ? 1 : 0}};
@@ -180,6 +188,8 @@ class Lane {
   std::optional<Contestant> contestant_;
   LandmarkIdentity identity_;
   double diverged_beyond_;
+  Recovery recovery_;
+  int disturbances_ = 0;
   std::vector<EstimatedPose> path_;
   std::vector<std::size_t> observation_of_pose_;  ///< by pose of the path
   std::size_t observations_ = 0;
@@ -211,7 +221,8 @@ RunOutcome run_task(const CampaignPlan& plan, const CampaignTask& task,
   place(*simulator, state, truth);
   std::vector<std::unique_ptr<Lane>> lanes;
   for (const Variant& variant : point.variants)
-    lanes.push_back(std::make_unique<Lane>(variant, state, plan.campaign.diverged_beyond));
+    lanes.push_back(std::make_unique<Lane>(variant, state, plan.campaign.diverged_beyond,
+                                           point.scenario.faults.kidnap));
   while (const auto step = simulator->next()) {
     if (stop != nullptr && stop->load()) throw std::runtime_error("interrupted");
     state.pose = relative_pose(simulator->start(), step->T_world_robot);

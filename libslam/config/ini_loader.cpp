@@ -240,11 +240,8 @@ void read_association(const IniFile& ini, KfSlamIni& result) {
   association.new_landmark_probability = association.gate_probability;
   association.confirm_after = 1;
   association.prune_after = 0;
-  if (ini.choice(kSlam, "data_assoc_method", {"assocNN", "assocJCBB"}, 0) == 1) {
-    result.notes.emplace_back(
-        "data_assoc_method: joint compatibility (assocJCBB) is not available; observations without "
-        "identity are matched by nearest neighbour.");
-  }
+  if (ini.choice(kSlam, "data_assoc_method", {"assocNN", "assocJCBB"}, 0) == 1)
+    association.method = "known_or_joint";
   if (ini.choice(kSlam, "data_assoc_metric", {"metricMaha", "metricML"}, 1) == 0) {
     result.notes.emplace_back(
         "data_assoc_metric: among several partners the one with the least d^2 + log|S| is taken, "

@@ -12,6 +12,8 @@ namespace {
 /// leave three constraints beside the pose, two leave one. Two will do for a short displacement.
 constexpr std::size_t kEnoughPairs = 3, kEnoughPairsNearby = 2;
 constexpr double kNearbyScale = 0.4;
+/// Updates in a row of which half or more fits nothing: with gates of .99 once in a million.
+constexpr int kPersistent = 3;
 
 void inflate_all(GaussianState& state, double factor) {
   for (const BlockId block : state.blocks()) {
@@ -24,19 +26,32 @@ void inflate_all(GaussianState& state, double factor) {
 
 }  // namespace
 
-DisturbanceResponse::DisturbanceResponse(Disturbance policy, double near_landmark, int lost_after)
-    : policy_(std::move(policy)), near_landmark_(near_landmark), lost_after_(lost_after) {
-  if (!(near_landmark >= 0.0) || lost_after < 1)
+DisturbanceResponse::DisturbanceResponse(Disturbance policy, const ResponseOptions& options)
+    : policy_(std::move(policy)), options_(options) {
+  if (!(options.near_landmark >= 0.0) || options.lost_after < 1)
     throw std::invalid_argument("a lost pose needs a distance and a number of updates");
+}
+
+void DisturbanceResponse::lose() {
+  relocalizer_.restart();
+  unexplained_ = options_.lost_after;
 }
 
 void DisturbanceResponse::found() {
   policy_.settle();
-  unexplained_ = 0;
+  unexplained_ = unpaired_ = 0;
+}
+
+void DisturbanceResponse::moved(const Eigen::VectorXd& before, const Eigen::VectorXd& after,
+                                const BlockMatrix& cov) {
+  if (options_.relocalize && disturbed()) relocalizer_.move(before, after, cov);
 }
 
 Doubt DisturbanceResponse::answer(const RespondingFilter& filter,
                                   const AssociatedObservation& observation) {
+  const bool identified = std::ranges::any_of(
+      observation.features, [](const Feature& feature) { return feature.id != kNoIdentity; });
+  if (lost() && options_.relocalize && !identified) return stay_lost(filter, observation);
   const auto counted = evidence(observation);
   double nis = 0.0;
   if (!counted.empty()) {
@@ -44,8 +59,10 @@ Doubt DisturbanceResponse::answer(const RespondingFilter& filter,
     nis = Disturbance::squared_distance(joint_);
   }
   const int dof = counted.empty() ? 0 : static_cast<int>(joint_.nu.size());
-  const bool unfamiliar = estranged(filter, observation);
+  const bool pairs_fit = observation.paired.size() >= kEnoughPairsNearby && policy_.quiet(nis, dof);
+  const bool unfamiliar = estranged(filter, observation, pairs_fit);
   const bool beyond = policy_.judge(nis, dof, unfamiliar);
+  if (policy_.began()) relocalizer_.restart();
   if (!policy_.lasts()) {
     unexplained_ = 0;
     return Doubt::kNone;
@@ -55,19 +72,25 @@ Doubt DisturbanceResponse::answer(const RespondingFilter& filter,
 }
 
 bool DisturbanceResponse::estranged(const RespondingFilter& filter,
-                                    const AssociatedObservation& observation) const {
+                                    const AssociatedObservation& observation, bool pairs_fit) {
   Initialization where;
-  std::size_t strangers = 0;
+  std::size_t strangers = 0, undecided = 0;
   for (std::size_t i = 0; i < observation.features.size(); ++i) {
     const Feature& feature = observation.features[i];
-    if (feature.id != kNoIdentity || observation.verdicts[i].outcome != Outcome::kNew) continue;
+    if (feature.id != kNoIdentity) continue;
+    if (observation.verdicts[i].outcome == Outcome::kAmbiguous) ++undecided;
+    if (observation.verdicts[i].outcome != Outcome::kNew) continue;
     filter.measurement.initialize(filter.state, filter.pose, feature, where);
     const auto near = [&](const RegisteredLandmark& landmark) {
-      return (filter.state.estimate(landmark.block) - where.estimate).norm() <= near_landmark_;
+      return (filter.state.estimate(landmark.block) - where.estimate).norm() <=
+             options_.near_landmark;
     };
     if (std::ranges::any_of(filter.registry.landmarks(), near)) ++strangers;
   }
-  return strangers >= 2 && 2 * strangers >= observation.features.size();
+  const std::size_t n = observation.features.size(), unpaired = strangers + undecided;
+  const bool fits_nothing = !pairs_fit && unpaired > 0 && 2 * unpaired >= n;
+  unpaired_ = fits_nothing ? unpaired_ + 1 : 0;
+  return unpaired_ >= kPersistent || (fits_nothing && strangers >= 2 && 2 * strangers >= n);
 }
 
 std::span<const LinearizedMeasurement> DisturbanceResponse::evidence(
@@ -93,18 +116,37 @@ Doubt DisturbanceResponse::search(const RespondingFilter& filter) {
     if (scale > 0.0)
       filter.state.covariance().add_noise(offset, policy_.added(scale) - policy_.added(before));
     before = scale;
-    if (plausible(filter, filter.associate(), scale)) return settle_on(true);
+    const std::size_t enough = scale <= kNearbyScale ? kEnoughPairsNearby : kEnoughPairs;
+    if (plausible(filter, filter.associate(), enough)) return settle_on(true);
   }
   // The displacement stays unknown; the next observation starts from the odometry again.
   filter.state.covariance().add_noise(offset, -policy_.added(before));
   return settle_on(false);
 }
 
+// By chance alone so many landmarks do not stand where a lost robot expects them.
+Doubt DisturbanceResponse::stay_lost(const RespondingFilter& filter,
+                                     const AssociatedObservation& observation) {
+  if (!plausible(filter, observation, kEnoughPairs)) return settle_on(false);
+  found();
+  return Doubt::kDisturbed;
+}
+
+std::optional<FoundPose> DisturbanceResponse::search_map(const RespondingFilter& filter,
+                                                         std::span<const Feature> features) {
+  if (!options_.relocalize || !disturbed()) return std::nullopt;
+  relocalizer_.observe(filter.state, filter.pose, filter.measurement, features);
+  if (!lost()) return std::nullopt;
+  auto found_pose = relocalizer_.find(filter.state, filter.registry);
+  if (found_pose) found();
+  return found_pose;
+}
+
 bool DisturbanceResponse::plausible(const RespondingFilter& filter,
-                                    const AssociatedObservation& observation, double scale) {
+                                    const AssociatedObservation& observation,
+                                    std::size_t enough_pairs) {
   const std::size_t pairs = observation.paired.size();
-  if (pairs < (scale <= kNearbyScale ? kEnoughPairsNearby : kEnoughPairs)) return false;
-  if (2 * pairs < observation.features.size()) return false;
+  if (pairs < enough_pairs || 2 * pairs < observation.features.size()) return false;
   filter.ekf.expect(filter.state, filter.pose, observation.paired, joint_);
   return policy_.quiet(Disturbance::squared_distance(joint_), static_cast<int>(joint_.nu.size()));
 }

@@ -4,15 +4,18 @@
 //   quiet      -> every update is tested, nothing else
 //   disturbed  -> before each correction the pose gets the covariance that explains the
 //                 observation, which is then associated anew; new landmarks wait
-//   lost       -> nothing explained several updates in a row; the caller may search the whole map
+//   lost       -> nothing explained several updates in a row: the whole map is searched for what
+//                 was seen since the disturbance began, and nothing else is believed
 
 #include <functional>
+#include <optional>
 #include <span>
 
 #include <libslam/association/associator.hpp>
 #include <libslam/association/landmark_registry.hpp>
 #include <libslam/data/joint_innovation.hpp>
 #include <libslam/filter/ekf.hpp>
+#include <libslam/filter/relocalizer.hpp>
 #include <libslam/measurement/measurement_model.hpp>
 #include <libslam/policy/disturbance.hpp>
 #include <libslam/state/gaussian_state.hpp>
@@ -39,43 +42,58 @@ struct RespondingFilter {
 };
 
 enum class Doubt {
-  kNone,        ///< use the observation as it is associated
-  kDisturbed,   ///< likewise, but it adds no landmark
-  kUnexplained  ///< do not use it
+  kNone,         ///< use the observation as it is associated
+  kDisturbed,    ///< likewise, but it adds no landmark
+  kUnexplained,  ///< do not use it
+};
+
+struct ResponseOptions {
+  double near_landmark = 10.0;  ///< a feature this near to a landmark should fit one [m]
+  int lost_after = 3;           ///< updates in a row that nothing explains
+  bool relocalize = true;       ///< planar poses and points alone
 };
 
 class DisturbanceResponse {
  public:
-  /// Nearness of `estranged` [m]; updates in a row without explanation before the pose is lost.
   /// Throws std::invalid_argument unless `near_landmark` >= 0 and `lost_after` >= 1.
-  DisturbanceResponse(Disturbance policy, double near_landmark, int lost_after);
+  DisturbanceResponse(Disturbance policy, const ResponseOptions& options);
 
+  /// The robot has moved: where the pose block was before, and the covariance of the step.
+  void moved(const Eigen::VectorXd& before, const Eigen::VectorXd& after, const BlockMatrix& cov);
   /// To be called before the correction; may inflate the covariance and associate anew.
   Doubt answer(const RespondingFilter& filter, const AssociatedObservation& observation);
+  /// After an `answer`: the pose of a lost robot, if the map shows it.
+  std::optional<FoundPose> search_map(const RespondingFilter& filter,
+                                      std::span<const Feature> features);
 
-  bool disturbed() const { return policy_.lasts(); }
+  /// Nothing is known of the pose: the map will be searched for it.
+  void lose();
+  bool disturbed() const { return policy_.lasts() || lost(); }
+  bool lost() const { return unexplained_ >= options_.lost_after; }
   /// The last `answer` began a disturbance.
   bool began() const { return policy_.began(); }
-  bool lost() const { return unexplained_ >= lost_after_; }
   /// The last `answer` lost the pose.
-  bool became_lost() const { return unexplained_ == lost_after_; }
-  /// The pose has been found by other means.
-  void found();
+  bool became_lost() const { return unexplained_ == options_.lost_after; }
 
  private:
-  bool estranged(const RespondingFilter& filter, const AssociatedObservation& observation) const;
+  /// Judges what no identity says where it belongs.
+  bool estranged(const RespondingFilter& filter, const AssociatedObservation& observation,
+                 bool pairs_fit);
   /// Innovations that count: those the gate rejected only where they are many.
   std::span<const LinearizedMeasurement> evidence(const AssociatedObservation& observation) const;
   Doubt inflate(const RespondingFilter& filter);
   Doubt search(const RespondingFilter& filter);
+  Doubt stay_lost(const RespondingFilter& filter, const AssociatedObservation& observation);
   bool plausible(const RespondingFilter& filter, const AssociatedObservation& observation,
-                 double scale);
+                 std::size_t enough_pairs);
   Doubt settle_on(bool explained);
+  void found();
 
   Disturbance policy_;
-  double near_landmark_;
-  int lost_after_;
-  int unexplained_ = 0;
+  ResponseOptions options_;
+  Relocalizer relocalizer_;
+  int unexplained_ = 0;  // updates in a row
+  int unpaired_ = 0;     // updates in a row of which half or more fits nothing
   JointInnovation joint_;
 };
 

@@ -113,6 +113,8 @@ void EkfSlam::propagate(const MotionAction* action) {
   if (parts_.process) scale_process_noise();
   if (!calibration_.empty())
     calibration_.observe(state_, pose_, step_, action->dt, displacement_model());
+  if (disturbed())
+    parts_.disturbance->moved(state_.estimate(pose_), step_.estimate, step_.cov_noise);
   ekf_.propagate(state_, step_);
   if (parts_.implied_input)
     parts_.implied_input->move(step_.wrt.begin()->jacobian, step_.cov_noise);
@@ -189,9 +191,13 @@ void EkfSlam::linearize_pairs(std::span<const Feature> features) {
 
 void EkfSlam::respond(std::span<const Feature> features, UpdateOutcome& outcome) {
   DisturbanceResponse& response = *parts_.disturbance;
-  const Doubt doubt = response.answer({state_, pose_, ekf_, *parts_.measurement, parts_.registry,
-                                       [&] { return associate(features); }},
-                                      {features, verdicts_, accepted(), measured_});
+  const RespondingFilter self{state_,
+                              pose_,
+                              ekf_,
+                              *parts_.measurement,
+                              parts_.registry,
+                              [&] { return associate(features); }};
+  const Doubt doubt = response.answer(self, {features, verdicts_, accepted(), measured_});
   if (doubt == Doubt::kNone) return;
   if (response.began()) outcome.event = "disturbance";
   if (response.became_lost()) outcome.event = "lost";
@@ -199,6 +205,24 @@ void EkfSlam::respond(std::span<const Feature> features, UpdateOutcome& outcome)
     if (verdict.outcome == Outcome::kNew || doubt == Doubt::kUnexplained)
       verdict.outcome = Outcome::kAmbiguous;
   if (doubt == Doubt::kUnexplained) linearize_pairs(features);
+  if (const auto found = response.search_map(self, features)) {
+    start_again_at(*found, features);
+    outcome.event = "relocalized";
+  }
+}
+
+void EkfSlam::start_again_at(const FoundPose& found, std::span<const Feature> features) {
+  ekf_.propagate(state_, {pose_, found.T_world_robot, {}, found.cov_uninformed});
+  verdicts_.assign(features.size(), {});
+  for (const auto& [feature, landmark] : found.pairs)
+    verdicts_[feature] = {Outcome::kPaired, landmark};
+  linearize_pairs(features);
+}
+
+void EkfSlam::lose_pose() {
+  if (!parts_.disturbance)
+    throw std::invalid_argument("a filter without a response to disturbances keeps its pose");
+  parts_.disturbance->lose();
 }
 
 void EkfSlam::reject_impossible(std::span<const Feature> features, UpdateOutcome& outcome) {

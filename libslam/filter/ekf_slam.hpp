@@ -75,6 +75,9 @@ class EkfSlam {
   /// the displacement since the reading before, gates and corrects.
   UpdateOutcome update(std::span<const Feature> features);
 
+  /// Nothing is known of the pose: it is searched in the map. Throws std::invalid_argument if the
+  /// filter does not respond to disturbances.
+  void lose_pose();
   /// Localization from now on: the landmarks keep their estimates and covariances, which count in
   /// every innovation, and none is added (MapStart::landmarks_given); or SLAM again.
   void give_landmarks(bool given);
@@ -111,6 +114,7 @@ class EkfSlam {
   AssociatedObservation associate(std::span<const Feature> features);
   void linearize_pairs(std::span<const Feature> features);
   void respond(std::span<const Feature> features, UpdateOutcome& outcome);
+  void start_again_at(const FoundPose& found, std::span<const Feature> features);
   /// Gives up an observation that implies an impossible motion; the landmarks start anew, unless
   /// they are given.
   void reject_impossible(std::span<const Feature> features, UpdateOutcome& outcome);

@@ -74,8 +74,8 @@ void enter_landmarks(const MapStart& start, const MappedParts& parts, Rows& rows
     const BlockId block = landmark.exact ? parts.state.add_constant(parts.landmark, landmark.mean)
                                          : parts.state.add(parts.landmark, landmark.mean, nothing);
     if (!landmark.exact) append_rows(rows, own, map.dimension);
-    parts.registry.restore(
-        {block, landmark.id, landmark.times_seen, landmark.updates, landmark.confirmed});
+    parts.registry.restore({block, landmark.id, landmark.times_seen, landmark.updates,
+                            landmark.confirmed, landmark.appearance});
   }
   parts.registry.number_from(map.next_number);
 }
@@ -123,7 +123,7 @@ SavedMap leave_map(const GaussianState& state, BlockId pose, const CalibrationSt
   for (const RegisteredLandmark& known : registry.landmarks()) {
     const bool exact = state.is_constant(known.block);
     map.landmarks.push_back({known.id, kPoint, state.estimate(known.block), known.times_seen,
-                             known.updates, known.confirmed, exact, nullptr});
+                             known.updates, known.confirmed, exact, known.appearance});
     if (!exact) order.push_back(known.block);
   }
   Rows rows;

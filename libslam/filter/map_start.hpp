@@ -42,7 +42,8 @@ struct MappedParts {
 /// kind although the start asks for one.
 void enter_map(const MapStart& start, MappedParts parts);
 
-/// The map of a filter in its present state: a filter that starts in it goes on as this one does.
+/// The map of a filter in its present state: a filter of the same parts that starts in it goes on
+/// as this one does, but for what policies have adapted (noise, disturbances), which starts anew.
 SavedMap leave_map(const GaussianState& state, BlockId pose, const CalibrationStates& calibration,
                    const LandmarkRegistry& registry, const BlockSpec& landmark);
 

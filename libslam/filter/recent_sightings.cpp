@@ -56,7 +56,9 @@ void RecentSightings::move(const Eigen::Vector3d& increment, const Eigen::Matrix
 }
 
 void RecentSightings::add(std::span<const SightedPoint> observation, const SensorView& view) {
-  const auto forgotten = [this](auto& item) { return ++item.age >= memory_; };
+  for (Sighting& sighting : sightings_) ++sighting.age;
+  for (View& seen_from : views_) ++seen_from.age;
+  const auto forgotten = [this](const auto& item) { return item.age >= memory_; };
   std::erase_if(sightings_, forgotten);
   std::erase_if(views_, forgotten);
   views_.push_back({view, 0});

@@ -93,4 +93,8 @@ SavedMap read_map_file(const std::string& file, double sigma) {
   return is_encoded_map(begin) ? decode_map(read_whole(file), file) : read_survey(file, sigma);
 }
 
+bool is_saved_map(const std::string& file) {
+  return is_encoded_map(beginning_of(file));
+}
+
 }  // namespace libslam

@@ -21,4 +21,8 @@ std::filesystem::path map_csv_beside(const std::filesystem::path& file);
 /// surveyed_map does; which of them it is, the content says. Throws InputError.
 SavedMap read_map_file(const std::string& file, double sigma);
 
+/// Whether the file is a map that a run saved, so that its frame is the one of that run; surveyed
+/// landmarks are in the frame of the survey.
+bool is_saved_map(const std::string& file);
+
 }  // namespace libslam

@@ -13,7 +13,17 @@ FilterStart start_in(SavedMap map) {
   return start;
 }
 
+/// The map is in the state already.
+Parameters without_map_file(Parameters parameters) {
+  parameters.map.file.clear();
+  return parameters;
+}
+
 }  // namespace
+
+bool PairFeed::localizes(const Parameters& parameters) {
+  return !parameters.map.file.empty() && parameters.map.mode == "localize";
+}
 
 PairFeed::PairFeed(const Parameters& parameters, const std::string& entry_point, FilterStart start)
     : intake_(entry_point, parameters.input.policy),
@@ -22,15 +32,22 @@ PairFeed::PairFeed(const Parameters& parameters, const std::string& entry_point,
       last_(pipeline_.estimate()) {}
 
 PairFeed::PairFeed(const Parameters& parameters, const std::string& entry_point, ModuleState state)
-    : PairFeed(parameters, entry_point, start_in(std::move(state.map))) {
+    : PairFeed(without_map_file(parameters), entry_point, start_in(std::move(state.map))) {
+  if (localizes(parameters)) give_landmarks(true);
   steps_ = state.steps;
   assembler_.set_clock(state.clock);
 }
 
 const StepRecord& PairFeed::process(const mrpt::obs::CActionCollection::Ptr& action,
                                     const mrpt::obs::CSensoryFrame::Ptr& frame) {
-  step_ = assemble(action, frame);
-  const bool may_have_moved = !step_.action && filter().registry().size() > 0;
+  return process(assemble(action, frame));
+}
+
+const StepRecord& PairFeed::process(LogStep step) {
+  step_ = std::move(step);
+  step_.index = steps_++;
+  const bool may_have_moved =
+      !step_.action && pipeline_.needs_odometry() && filter().registry().size() > 0;
   last_ = may_have_moved ? pipeline_.process_frame(step_) : pipeline_.process(step_);
   return last_;
 }
@@ -49,7 +66,6 @@ LogStep PairFeed::assemble(const mrpt::obs::CActionCollection::Ptr& action,
   LogStep step;
   if (!assembler_.ready().empty()) step = std::move(assembler_.ready().front());
   assembler_.ready().clear();
-  step.index = steps_++;
   return step;
 }
 

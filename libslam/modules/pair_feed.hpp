@@ -21,13 +21,18 @@ class PairFeed {
   PairFeed(const Parameters& parameters, const std::string& entry_point, ModuleState state);
   PairFeed(const PairFeed&) = delete;  // its parts refer to each other
 
+  /// The landmarks are given by the map that the parameters name.
+  static bool localizes(const Parameters& parameters);
+
   /// One step: odometry of `action`, if it has any, then what `frame` shows. Either may be null.
   /// Once there is a map, a step without odometry may have moved the robot unseen. Throws
   /// UnusableOdometry for a movement in space of a planar robot, with the state unchanged, and
   /// InputError at a defect if input.policy is strict.
   const StepRecord& process(const mrpt::obs::CActionCollection::Ptr& action,
                             const mrpt::obs::CSensoryFrame::Ptr& frame);
-  /// The pair again, without its odometry: after UnusableOdometry.
+  /// A step that has its time already.
+  const StepRecord& process(LogStep step);
+  /// The last step again, without its odometry: after UnusableOdometry.
   const StepRecord& process_without_odometry();
 
   /// What the last step left behind; before the first one where the filter starts.
@@ -50,7 +55,7 @@ class PairFeed {
   Intake intake_;
   PairAssembler assembler_;
   Pipeline pipeline_;
-  LogStep step_;
+  LogStep step_;  // the last one
   StepRecord last_;
   std::int64_t steps_ = 0;
   std::size_t warnings_taken_ = 0;

@@ -9,19 +9,19 @@ namespace {
 
 using mrpt::poses::CPose3D;
 
-/// d(yaw, pitch, roll) by a small rotation about the axes of the world, R <- Exp(d) R: the inverse
-/// of its columns Rz Ry e_x, Rz e_y, e_z for roll, pitch, yaw.
-Eigen::Matrix3d angles_by_rotation(double yaw, double pitch) {
+/// d(rotation about the axes of the world) by yaw, pitch, roll, R <- Exp(d) R with
+/// R = Rz(yaw) Ry(pitch) Rx(roll).
+Eigen::Matrix3d rotation_by_angles(double yaw, double pitch) {
   const Eigen::AngleAxisd turn(yaw, Eigen::Vector3d::UnitZ());
-  Eigen::Matrix3d rotation_by_angles;
-  rotation_by_angles.col(0) = Eigen::Vector3d::UnitZ();
-  rotation_by_angles.col(1) = turn * Eigen::Vector3d::UnitY();
-  rotation_by_angles.col(2) =
+  Eigen::Matrix3d jacobian;
+  jacobian.col(0) = Eigen::Vector3d::UnitZ();
+  jacobian.col(1) = turn * Eigen::Vector3d::UnitY();
+  jacobian.col(2) =
       turn * Eigen::AngleAxisd(pitch, Eigen::Vector3d::UnitY()) * Eigen::Vector3d::UnitX();
-  return rotation_by_angles.inverse();
+  return jacobian;
 }
 
-/// d(r, x, y, z) by the same: q <- (1, d / 2) q.
+/// d(r, x, y, z) by a rotation about the axes of the world: q <- (1, d / 2) q.
 Eigen::Matrix<double, 4, 3> quaternion_by_rotation(const Eigen::Quaterniond& q) {
   Eigen::Matrix<double, 4, 3> jacobian;
   jacobian << -q.x(), -q.y(), -q.z(),  //
@@ -47,7 +47,8 @@ mrpt::poses::CPose3DPDFGaussian to_pose_pdf(const StepRecord& record) {
   pdf.mean =
       CPose3D(mrpt::math::CQuaternionDouble(q.w(), q.x(), q.y(), q.z()), p.x(), p.y(), p.z());
   Eigen::Matrix<double, 6, 6> jacobian = Eigen::Matrix<double, 6, 6>::Identity();
-  jacobian.bottomRightCorner<3, 3>() = angles_by_rotation(pdf.mean.yaw(), pdf.mean.pitch());
+  jacobian.bottomRightCorner<3, 3>() =
+      rotation_by_angles(pdf.mean.yaw(), pdf.mean.pitch()).inverse();
   pdf.cov.asEigen() = jacobian * record.spatial->cov * jacobian.transpose();
   return pdf;
 }
@@ -64,6 +65,19 @@ mrpt::poses::CPose3DQuatPDFGaussian to_quaternion_pdf(const StepRecord& record) 
   jacobian.bottomRightCorner<4, 3>() = quaternion_by_rotation(q);
   pdf.cov.asEigen() = jacobian * estimate.cov * jacobian.transpose();
   return pdf;
+}
+
+SpatialEstimate from_pose_pdf(const mrpt::poses::CPose3DPDF& pose) {
+  mrpt::poses::CPose3DPDFGaussian pdf;
+  pdf.copyFrom(pose);
+  const mrpt::math::CQuaternionDouble q = mrpt::poses::CPose3DQuat(pdf.mean).quat();
+  SpatialEstimate estimate;
+  estimate.pose.position = {pdf.mean.x(), pdf.mean.y(), pdf.mean.z()};
+  estimate.pose.rotation = Eigen::Quaterniond(q.r(), q.x(), q.y(), q.z());
+  Eigen::Matrix<double, 6, 6> jacobian = Eigen::Matrix<double, 6, 6>::Identity();
+  jacobian.bottomRightCorner<3, 3>() = rotation_by_angles(pdf.mean.yaw(), pdf.mean.pitch());
+  estimate.cov = jacobian * pdf.cov.asEigen() * jacobian.transpose();
+  return estimate;
 }
 
 }  // namespace libslam

@@ -16,4 +16,8 @@ mrpt::poses::CPose3DPDFGaussian to_pose_pdf(const StepRecord& record);
 /// The same as x, y, z [m] and quaternion r, x, y, z.
 mrpt::poses::CPose3DQuatPDFGaussian to_quaternion_pdf(const StepRecord& record);
 
+/// The way back; exact where the covariance is that of a Gaussian and the pitch is not +-90
+/// degrees.
+SpatialEstimate from_pose_pdf(const mrpt::poses::CPose3DPDF& pose);
+
 }  // namespace libslam

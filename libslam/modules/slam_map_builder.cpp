@@ -69,8 +69,7 @@ void SlamMapBuilder::processActionObservation(mrpt::obs::CActionCollection& acti
 }
 
 void SlamMapBuilder::hold_map_on_demand() {
-  const MapParameters& map = slam_options.parameters.map;
-  const bool given = !options.enableMapUpdating || (!map.file.empty() && map.mode == "localize");
+  const bool given = !options.enableMapUpdating || PairFeed::localizes(slam_options.parameters);
   if (std::exchange(impl_->map_given, given) != given) impl_->feed.give_landmarks(given);
 }
 

@@ -1,10 +1,8 @@
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
 #include <Eigen/Dense>  // before any use of asEigen()
-#include <mrpt/obs/CActionRobotMovement3D.h>
-#include <mrpt/obs/CObservationIMU.h>
-#include <mrpt/obs/CObservationOdometry.h>
 #include <mrpt/poses/CPose3DPDF.h>
 
 #include <libslam/config/validation.hpp>
@@ -20,49 +18,27 @@ namespace libslam {
 
 namespace {
 
-using Twist = Eigen::Matrix<double, 6, 1>;
 using mrpt::obs::CActionCollection;
+using mrpt::obs::CObservation;
 using mrpt::obs::CObservationIMU;
+using mrpt::obs::CObservationOdometry;
 using mrpt::obs::CSensoryFrame;
+
+/// Images may wait for the odometry after them, but not without end.
+constexpr std::uint64_t kBytesPerImage = ObservationSplitter::kMaxPendingBytes / 64;
 
 bool is_spatial(const Parameters& p) {
   return make_motion_model(p.motion, p.calibration, p.input)->pose_spec().chart == Chart::kSE3;
 }
 
-/// The start that the parameters describe.
-StepRecord configured_start(const Parameters& p) {
-  StepRecord record;
-  const double heading = p.map.initial_heading_deg * kPi / 180.0;
-  const double sigma_heading = p.filter.initial_sigma_heading_deg * kPi / 180.0;
-  record.pose = {p.map.initial_x, p.map.initial_y, heading};
-  record.cov.diagonal() << std::pow(p.filter.initial_sigma_xy, 2),
-      std::pow(p.filter.initial_sigma_xy, 2), std::pow(sigma_heading, 2);
-  return record;
-}
-
-std::optional<Twist> twist_of(const CObservationIMU& imu) {
-  constexpr mrpt::obs::TIMUDataIndex kFields[] = {mrpt::obs::IMU_X_VEL, mrpt::obs::IMU_Y_VEL,
-                                                  mrpt::obs::IMU_Z_VEL, mrpt::obs::IMU_WX,
-                                                  mrpt::obs::IMU_WY,    mrpt::obs::IMU_WZ};
-  Twist twist;
-  for (int i = 0; i < 6; ++i) {
-    if (!imu.has(kFields[i])) return std::nullopt;
-    twist[i] = imu.get(kFields[i]);
-  }
-  return twist;
-}
-
-/// The velocity as an action, which ends at `time`.
-CActionCollection::Ptr action_of(const Twist& twist, const mrpt::Clock::time_point& time) {
-  mrpt::obs::CActionRobotMovement3D movement;
-  movement.timestamp = time;
-  movement.hasVelocities.assign(6, true);
-  movement.velocities.resize(6);  // x, y, z, yaw, pitch, roll
-  const double values[] = {twist[0], twist[1], twist[2], twist[5], twist[4], twist[3]};
-  for (int i = 0; i < 6; ++i) movement.velocities[i] = values[i];
-  auto actions = CActionCollection::Create();
-  actions->insert(movement);
-  return actions;
+OdometryReading reading_of(const CObservationOdometry& odometry, double time) {
+  OdometryReading reading;
+  reading.time = time;
+  reading.pose = {odometry.odometry.x(), odometry.odometry.y(), odometry.odometry.phi()};
+  if (odometry.hasVelocities)
+    reading.velocity = {odometry.velocityLocal.vx, odometry.velocityLocal.vy,
+                        odometry.velocityLocal.omega};
+  return reading;
 }
 
 }  // namespace
@@ -78,37 +54,82 @@ StereoLocalization::Impl& StereoLocalization::running() const {
 
 void StereoLocalization::initialize(const mrpt::poses::CPose3DPDF* x0) {
   Parameters p = options.parameters;
-  validate(p);
   FilterStart start;
   if (x0 != nullptr) {
+    StepRecord record;
+    record.spatial = from_pose_pdf(*x0);
+    record.pose = shadow_of(record.spatial->pose);
+    record.cov = shadow_covariance(*record.spatial);
+    start = start_at(record, is_spatial(p));
     p.map.start = "given_pose";
-    start = start_at(*x0, is_spatial(p));
-  } else if (p.map.file.empty() || p.map.start == "given_pose") {
-    start = start_at(configured_start(p), is_spatial(p));
   }
+  validate(p);
   impl_ = std::make_unique<Impl>(p, std::move(start));
 }
 
-void StereoLocalization::processObservation(const mrpt::obs::CObservation::Ptr& observation) {
+void StereoLocalization::processObservation(const CObservation::Ptr& observation) {
   Impl& impl = running();
-  if (const auto imu = std::dynamic_pointer_cast<CObservationIMU>(observation)) {
-    const std::optional<Twist> read = twist_of(*imu);
-    if (!read) return;
-    if (impl.twist) processActionObservation(action_of(*impl.twist, imu->timestamp), nullptr);
-    impl.twist = read;
+  const bool moves = std::dynamic_pointer_cast<CObservationIMU>(observation) ||
+                     std::dynamic_pointer_cast<CObservationOdometry>(observation);
+  const bool by_twist = impl.odometry == "twist", by_poses = !by_twist && impl.odometry != "none";
+  if (moves && by_twist) return hold(*observation);
+  if (moves || by_poses) {
+    if (by_poses) drive(observation);
     return;
   }
   auto frame = CSensoryFrame::Create();
   frame->insert(observation);
-  processActionObservation(impl.twist ? action_of(*impl.twist, observation->timestamp) : nullptr,
-                           frame);
+  process(impl.twist.known() ? impl.twist.action(observation->timestamp) : nullptr, frame);
+}
+
+void StereoLocalization::hold(const CObservation& reading) {
+  VehicleTwist& twist = running().twist;
+  const bool first = !twist.known();
+  if (!first) process(twist.action(reading.timestamp), nullptr);
+  if (const auto* imu = dynamic_cast<const CObservationIMU*>(&reading)) twist.read(*imu);
+  if (const auto* odometry = dynamic_cast<const CObservationOdometry*>(&reading))
+    twist.read(*odometry);
+  // The first reading starts the clock; it also holds for what was before it.
+  if (first && twist.known()) process(twist.action(reading.timestamp), nullptr);
+}
+
+void StereoLocalization::drive(const CObservation::Ptr& observation) {
+  ObservationSplitter& splitter = running().splitter;
+  const auto* odometry = dynamic_cast<const CObservationOdometry*>(observation.get());
+  const std::optional<double> time = stamp_seconds(observation->timestamp);
+  const double earliest = odometry ? splitter.last_reading_time() : splitter.open_time();
+  if (!time || *time < earliest) {
+    MRPT_LOG_WARN_STREAM("observation '" << observation->sensorLabel
+                                         << "' has no valid time or comes too late: left out");
+    return;
+  }
+  if (odometry)
+    splitter.add_reading(reading_of(*odometry, *time));
+  else if (!std::dynamic_pointer_cast<CObservationIMU>(observation))
+    splitter.add_observation(observation, *time, kBytesPerImage);
+  process_ready();
+}
+
+void StereoLocalization::process_ready() {
+  Impl& impl = running();
+  while (!impl.splitter.ready().empty()) {
+    LogStep step = std::move(impl.splitter.ready().front());
+    impl.splitter.ready().pop_front();
+    impl.feed.process(std::move(step));
+    report_step();
+  }
 }
 
 void StereoLocalization::processActionObservation(const CActionCollection::Ptr& action,
                                                   const CSensoryFrame::Ptr& SF) {
+  process(action ? CActionCollection::Create(*action) : nullptr, SF);  // it is mended on its way
+}
+
+void StereoLocalization::process(const CActionCollection::Ptr& action,
+                                 const CSensoryFrame::Ptr& frame) {
   Impl& impl = running();
   try {
-    impl.feed.process(action, SF);
+    impl.feed.process(action, frame);
   } catch (const UnusableOdometry& unusable) {
     if (options.parameters.input.policy == "strict") throw;
     MRPT_LOG_WARN(unusable.what());

@@ -6,14 +6,18 @@
 //         pairs of action and frame (processActionObservation),
 // Then    the pose is that of the last one, in space as MRPT's own types have it.
 //
-// Points come from CObservationStereoImagesFeatures, or with the front-end for images from
-// CObservationStereoImages (`parameters.frontend.source`). What moves the pose between them:
-// - CObservationIMU with velocities (IMU_X_VEL ..., of the vehicle) and turn rates (IMU_WX ...):
-//   each holds until the next reading. The default.
-// - CObservationOdometry, a planar robot (`parameters.motion.model` differential or another one of
-//   the plane, `parameters.input.odometry` auto). Times are cut at the images
-//   (io/observation_splitter.hpp): an image counts once the reading of odometry after it is there.
-// - the action of a pair.
+// Points come from CObservationStereoImagesFeatures, or with a front-end for images
+// (`parameters.frontend.source`) from CObservationStereoImages. What moves the pose between them:
+//
+// - input.odometry twist, the default: velocities of the vehicle, each of which holds until the
+//   next reading. Turn rates (IMU_WX, IMU_WY, IMU_WZ) come from CObservationIMU. The velocity comes
+//   from a CObservationOdometry with velocities, or from IMU_X_VEL, IMU_Y_VEL, IMU_Z_VEL, which
+//   MRPT defines in the frame of navigation, where the IMU gives its orientation in that frame as
+//   well.
+// - another input.odometry, with a planar motion model: the poses of CObservationOdometry, cut at
+//   the images (io/observation_splitter.hpp). An image counts once the reading after it is there.
+// - input.odometry none with motion.model constant_twist: nothing.
+// - the actions of pairs.
 
 #include <memory>
 #include <string>
@@ -31,6 +35,9 @@ class CActionCollection;
 class CObservation;
 class CSensoryFrame;
 }  // namespace mrpt::obs
+namespace mrpt::poses {
+class CPose3DQuatPDFGaussian;
+}
 namespace mrpt::serialization {
 class CArchive;
 }
@@ -87,13 +94,19 @@ class StereoLocalization : public mrpt::system::COutputLogger {
 
   /// The map in a file for the next time (io/map_file.hpp); throws like write_map_file.
   void saveMap(const std::string& file) const;
-  /// As RangeBearingSlam2D has it; observations that wait for odometry are not part of it.
+  /// As RangeBearingSlam2D has it. Observations that wait for odometry and the velocity that holds
+  /// are not part of it: the first reading afterwards holds for what was before it.
   void saveState(mrpt::serialization::CArchive& out) const;
   void loadState(mrpt::serialization::CArchive& in);
 
  private:
   struct Impl;
   Impl& running() const;
+  void hold(const mrpt::obs::CObservation& reading);
+  void drive(const std::shared_ptr<mrpt::obs::CObservation>& observation);
+  void process(const std::shared_ptr<mrpt::obs::CActionCollection>& action,
+               const std::shared_ptr<mrpt::obs::CSensoryFrame>& frame);
+  void process_ready();
   void report_step();
 
   std::unique_ptr<Impl> impl_;

@@ -1,14 +1,13 @@
 #pragma once
 // What StereoLocalization holds; not for users.
 
-#include <optional>
+#include <string>
 #include <utility>
-
-#include <Eigen/Core>
 
 #include <libslam/io/observation_splitter.hpp>
 #include <libslam/modules/pair_feed.hpp>
 #include <libslam/modules/stereo_localization.hpp>
+#include <libslam/modules/vehicle_twist.hpp>
 
 namespace libslam {
 
@@ -20,11 +19,9 @@ struct StereoLocalization::Impl {
         odometry(parameters.input.odometry) {}
 
   PairFeed feed;
-  std::string odometry;  ///< input.odometry: what drives the motion
-  /// Velocity of the vehicle that holds now: vx, vy, vz [m/s], wx, wy, wz [rad/s].
-  std::optional<Eigen::Matrix<double, 6, 1>> twist;
-  ObservationSplitter splitter;  ///< of planar odometry
-  std::size_t ignored = 0;       ///< observations that nothing could be made of
+  std::string odometry;          ///< input.odometry: what drives the motion
+  VehicleTwist twist;            ///< where velocities do
+  ObservationSplitter splitter;  ///< where poses of odometry do
   bool healthy = true;
 };
 

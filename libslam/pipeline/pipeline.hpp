@@ -49,6 +49,8 @@ class Pipeline {
 
   /// Localization from now on, or SLAM: EkfSlam::give_landmarks.
   void give_landmarks(bool given) { filter_.give_landmarks(given); }
+  /// False if the motion model knows by itself how the body moves between two frames.
+  bool needs_odometry() const { return !keeps_velocity_; }
   /// The pose and the calibration as they are now, without anything about an update.
   StepRecord estimate() const;
 

@@ -75,7 +75,11 @@ std::optional<DisturbanceResponse> make_disturbance_response(const DisturbancePa
   options.sigma = BlockVector::Constant(tangent_dimension(pose), p.sigma_heading_deg * kPi / 180.0);
   options.sigma.head(positions).setConstant(p.sigma_xy);
   options.max_factor = p.max_factor;
-  return DisturbanceResponse(Disturbance(options), p.near_landmark, p.lost_after);
+  ResponseOptions response;
+  response.near_landmark = p.near_landmark;
+  response.lost_after = p.lost_after;
+  response.relocalize = p.relocalize && pose.chart == Chart::kSE2;
+  return DisturbanceResponse(Disturbance(options), response);
 }
 
 }  // namespace libslam

@@ -67,6 +67,12 @@ void require_folder_of_map(const std::filesystem::path& file) {
     throw std::runtime_error("cannot write " + file.string() + ": no directory " + folder.string());
 }
 
+/// Surveyed landmarks are in the frame of the truth, and so is a run that localizes among them.
+Placement placement_in(const MapParameters& map) {
+  const bool surveyed = !map.file.empty() && map.mode == "localize" && !is_saved_map(map.file);
+  return surveyed ? Placement::none : Placement::first;
+}
+
 class Run {
  public:
   explicit Run(const RunRequest& request)
@@ -196,6 +202,7 @@ class Run {
     summary.threads = request_.threads;
     summary.exit_code = exit_code_;
     summary.status = status_;
+    summary.result.placement = placement_in(request_.parameters.map);
     summary.input = {request_.rawlog,
                      input.entries,
                      input.actions,

@@ -11,6 +11,15 @@
 
 namespace libslam {
 
+namespace {
+
+/// No evidence is within every level, a distance that is no number within none.
+bool within(double nis, int dof, double probability) {
+  return dof == 0 || (std::isfinite(nis) && chi_square_probability(nis, dof) <= probability);
+}
+
+}  // namespace
+
 Disturbance::Disturbance(DisturbanceOptions options) : options_(std::move(options)) {
   const auto probability = [](double p) { return p > 0.0 && p < 1.0; };
   if (options_.window < 1 || options_.hold < 1)
@@ -22,11 +31,11 @@ Disturbance::Disturbance(DisturbanceOptions options) : options_(std::move(option
 }
 
 bool Disturbance::beyond_trigger(double nis, int dof) const {
-  return dof > 0 && !(chi_square_probability(nis, dof) <= options_.trigger_probability);
+  return !within(nis, dof, options_.trigger_probability);
 }
 
 bool Disturbance::quiet(double nis, int dof) const {
-  return dof == 0 || chi_square_probability(nis, dof) <= options_.release_probability;
+  return within(nis, dof, options_.release_probability);
 }
 
 bool Disturbance::judge(double nis, int dof, bool estranged) {

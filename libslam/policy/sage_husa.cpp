@@ -15,6 +15,10 @@ namespace {
 
 using Eigen::Index;
 
+/// Errors that always have the same ratio make R singular but for rounding, which then decides on
+/// its sign: so much of every error is taken to be its own.
+constexpr double kIndependence = 1e-3;
+
 double distance_of(const Feature& feature) {
   if (!feature.camera) return feature.z[0];
   // A disparity that noise made tiny or negative: as far as the camera can tell, one pixel.
@@ -87,7 +91,7 @@ MeasurementMatrix SageHusa::shape_of(const Feature& feature, Channel& channel) c
   return shape;
 }
 
-/// A congruence: it cannot make a positive definite matrix indefinite.
+/// A congruence, and slightly smaller correlations: neither can make a matrix less definite.
 void SageHusa::bound(MeasurementMatrix& cov) const {
   for (Index j = 0; j < cov.rows(); ++j) {
     const NoiseComponent& c = components_[static_cast<std::size_t>(j)];
@@ -98,6 +102,9 @@ void SageHusa::bound(MeasurementMatrix& cov) const {
     cov.row(j) *= scale;
     cov.col(j) *= scale;
   }
+  if (parameters_.method == "classic") return;  // repaired by its eigenvalues, or not at all
+  const MeasurementMatrix diagonal = cov.diagonal().asDiagonal();
+  cov += kIndependence * (diagonal - cov);
 }
 
 void SageHusa::apply(std::span<Feature> features) {

@@ -18,6 +18,8 @@
 // innovation form is a difference. Where H P- H^T is known exactly both have the true R as their
 // only fixed point; the residual form then moves by (R / S)^2 of the step d.
 //
+// Positive definite but for rounding: correlations are taken a thousandth smaller than learned.
+//
 // A gate at probability p cuts the tail of nu: what passes has the covariance kappa S with
 // kappa = F_{m+2}(g) / F_m(g), F_m the chi-square distribution with m degrees of freedom,
 // F_m(g) = p. Without that factor R would settle below the truth.

@@ -83,8 +83,8 @@ void DenseCovariance::assign(const MatrixRef& cov) {
     throw_dimension("assign", "matrix is " + std::to_string(cov.rows()) + " x " +
                                   std::to_string(cov.cols()) + " for dimension " +
                                   std::to_string(n_));
-  observed_ = 0;
   p_.topLeftCorner(n_, n_).triangularView<Eigen::Lower>() = cov;
+  observed_ = 0;
 }
 
 void DenseCovariance::propagate(Index offset, std::span<const PlacedJacobian> wrt,
@@ -262,6 +262,7 @@ void DenseCovariance::subtract_learning(const Eigen::MatrixXd& right, Index colu
       if (!learns_[static_cast<std::size_t>(i)]) p_(j, i) -= product_[i];
     p_.col(j).segment(j, n_ - j) -= product_.segment(j, n_ - j);
   }
+  observed_ = 0;
 }
 
 void DenseCovariance::correct(const ChartChange& change) {
@@ -272,11 +273,7 @@ void DenseCovariance::correct(const ChartChange& change) {
   }
   const Index columns = moves ? append(change) : observed_;
   const Eigen::MatrixXd& right = moves ? right_ : gain_;
-  if (observed_ > 0 && mostly_considered(change)) {
-    subtract_learning(right, columns);
-    observed_ = 0;
-    return;
-  }
+  if (observed_ > 0 && mostly_considered(change)) return subtract_learning(right, columns);
   kept_.clear();
   for (const Index i : considered_)
     for (const Index j : considered_) kept_.push_back(at(i, j));

@@ -49,7 +49,8 @@ class DenseCovariance final : public CovarianceStore {
   Eigen::Index append(const ChartChange& change);
   /// True where most coordinates are considered and stay in place; fills `learns_`.
   bool mostly_considered(const ChartChange& change);
-  /// P -= left right^T without the covariance of the considered coordinates with each other.
+  /// Ends a correction with P -= left right^T but for the covariance of the considered coordinates
+  /// with each other.
   void subtract_learning(const Eigen::MatrixXd& right, Eigen::Index columns);
   void reserve_gain(Eigen::Index columns);
   void require_inside(Eigen::Index offset, Eigen::Index size, const char* operation) const;

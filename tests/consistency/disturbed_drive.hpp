@@ -36,7 +36,7 @@ class DisturbedDriver {
       : scenario_(scenario),
         simulator_(make_simulator(scenario, seed)),
         pipeline_(parameters),
-        known_(parameters.association.method == "known") {}
+        known_(parameters.association.uses_identities()) {}
 
   DisturbedDrive drive() {
     while (const auto step = simulator_->next()) {

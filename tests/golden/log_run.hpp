@@ -31,10 +31,12 @@ struct LogRun {
   }
 };
 
-/// Runs `config` (a file of config/) with `settings` ("section.key=value") on `rawlog`.
+/// Runs `config` (a file of config/) with `settings` ("section.key=value") on `rawlog`; `save_map`:
+/// see RunRequest.
 inline LogRun run_log(const std::string& config, const std::string& rawlog,
                       const std::filesystem::path& directory,
-                      const std::vector<std::string>& settings = {}) {
+                      const std::vector<std::string>& settings = {},
+                      const std::filesystem::path& save_map = {}) {
   RunRequest request;
   request.rawlog = rawlog;
   request.parameters = load_yaml(std::filesystem::path(LIBSLAM_CONFIG_DIR) / config);
@@ -43,6 +45,7 @@ inline LogRun run_log(const std::string& config, const std::string& rawlog,
   validate(request.parameters);
   request.truth = read_truth(find_truth(rawlog));
   request.directory = directory;
+  request.save_map = save_map;
   request.force = true;
   LogRun run;
   run.summary = run_rawlog(request);
@@ -54,10 +57,11 @@ inline LogRun run_log(const std::string& config, const std::string& rawlog,
 /// Writes `log` beside `directory` and runs it.
 inline LogRun run_imported(const std::string& config, const ImportedLog& log,
                            const std::filesystem::path& directory,
-                           const std::vector<std::string>& settings = {}) {
+                           const std::vector<std::string>& settings = {},
+                           const std::filesystem::path& save_map = {}) {
   const std::string rawlog = directory.string() + ".rawlog";
   write_imported_log(log, rawlog);
-  return run_log(config, rawlog, directory, settings);
+  return run_log(config, rawlog, directory, settings, save_map);
 }
 
 /// Largest and root mean square distance between two paths at equal times [m].

@@ -3,6 +3,7 @@
 // constellation of that tells where it is.
 
 #include <cmath>
+#include <ctime>
 #include <optional>
 #include <random>
 #include <vector>
@@ -61,7 +62,8 @@ class KidnapWorld {
 
   const ConstellationIndex& index() const { return *index_; }
 
-  /// Drives from a random pose that sees enough; nothing if there is none in 10 000 draws.
+  /// Drives from a random pose that sees enough, on through the mapped world; nothing if there is
+  /// none in 10 000 draws.
   std::optional<KidnapOutcome> kidnap(const ConstellationOptions& matching) {
     if (!set_down()) return std::nullopt;
     KidnapOutcome outcome;
@@ -110,6 +112,10 @@ class KidnapWorld {
     std::uniform_real_distribution<double> heading(-3.14159265358979323846, 3.14159265358979323846);
     for (int draw = 0; draw < 10'000; ++draw) {
       pose_ << anywhere(), heading(random_);
+      const double way = options_.step_length * static_cast<double>(options_.frames);
+      const Eigen::Vector2d end =
+          pose_.head<2>() + way * Eigen::Vector2d(std::cos(pose_[2]), std::sin(pose_[2]));
+      if ((end.array() < least_.array()).any() || (end.array() > most_.array()).any()) continue;
       std::size_t visible = 0;
       for (const auto& p : landmarks_) visible += in_view(p).has_value();
       if (visible >= options_.least_visible) return true;

@@ -99,6 +99,11 @@ void check_disturbance(const Parameters& p, Conflicts& conflicts) {
                          "a disturbance is noticed by landmarks; without a map nothing tells it "
                          "from a wrong displacement"});
   }
+  if (d.relocalize && p.filter.linearization != "estimate") {
+    conflicts.push_back({{"policies.disturbance.relocalize", "filter.linearization"},
+                         "a pose that is found anew has no history of points to linearize at; "
+                         "take the estimate, or false"});
+  }
   if (d.trigger_probability >= 1.0 || d.release_probability >= 1.0) {
     conflicts.push_back(
         {{"policies.disturbance.trigger_probability", "policies.disturbance.release_probability"},

@@ -22,8 +22,15 @@ class Table final : public Compatibility {
       return std::nullopt;  // "certainly far": any bound above the limit will do
     return Match{d2, 0.0};
   }
+  // No joint tests.
+  void select(std::span<const Pairing>) override {}
+  const MeasurementVector& innovation(std::size_t) const override { return none_; }
+  const MeasurementMatrix& noise(std::size_t) const override { return no_noise_; }
+  MeasurementMatrix covariance(std::size_t, std::size_t) const override { return no_noise_; }
 
  private:
+  MeasurementVector none_;
+  MeasurementMatrix no_noise_;
   std::vector<std::vector<double>> distance2_;
 };
 

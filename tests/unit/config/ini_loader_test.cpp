@@ -82,9 +82,10 @@ TEST(KfSlamIni, NoiseWithoutOdometryInItsLaterForm) {
   EXPECT_TRUE(has_note(spatial, "stds_Q_no_odo"));
 }
 
-TEST(KfSlamIni, JointCompatibilityAndMetricsAreNoted) {
+TEST(KfSlamIni, JointCompatibilityIsFollowedAndMetricsAreNoted) {
   const KfSlamIni ini = load_kf_slam_ini(kStock / "EKF-SLAM_6D_test_datassoc.ini");
-  EXPECT_TRUE(has_note(ini, "data_assoc_method"));
+  EXPECT_EQ(ini.parameters.association.method, "known_or_joint");
+  EXPECT_FALSE(has_note(ini, "data_assoc_method"));
   EXPECT_TRUE(has_note(ini, "data_assoc_metric"));
   EXPECT_FALSE(has_note(ini, "data_assoc_IC_metric"));
   EXPECT_TRUE(has_note(ini, "std_sensor_pitch_deg"));
@@ -100,12 +101,11 @@ TEST(KfSlamIni, NothingIsDroppedInSilence) {
       "[RangeBearingKFSLAM_KalmanFilter]\nmethod=kfIKFFull\n[Elsewhere]\nkey=1\n"));
   EXPECT_EQ(ini.rawlog_file, "no.rawlog");
   EXPECT_FALSE(ini.ground_truth_file);
-  for (const char* key :
-       {"ground_truth_file", "rawlog_offset", "[RangeBearingKFSLAM] 'my_own_key'",
-        "data_assoc_method", "data_assoc_IC_metric", "method", "[Elsewhere] 'key'"}) {
+  for (const char* key : {"ground_truth_file", "rawlog_offset", "[RangeBearingKFSLAM] 'my_own_key'",
+                          "data_assoc_IC_metric", "method", "[Elsewhere] 'key'"}) {
     EXPECT_TRUE(has_note(ini, key)) << key;
   }
-  EXPECT_EQ(ini.notes.size(), 7U);
+  EXPECT_EQ(ini.notes.size(), 6U);
 }
 
 TEST(KfSlamIni, DefaultsAreThoseOfMrpt) {

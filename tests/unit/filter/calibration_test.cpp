@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <tests/support/slam_world.hpp>
 
 #include <gtest/gtest.h>
@@ -18,7 +19,8 @@ namespace {
 
 constexpr double kTrack = 0.5, kStep = 0.1;  // [m], [s]
 
-EkfSlam make_filter(const SlamWorld& world, const CalibrationParameters& calibration) {
+EkfSlam make_filter(const SlamWorld& world, const CalibrationParameters& calibration,
+                    std::optional<DisturbanceResponse> disturbance = {}) {
   MotionParameters motion;
   motion.track_width = kTrack;
   motion.noise = {};
@@ -32,6 +34,7 @@ EkfSlam make_filter(const SlamWorld& world, const CalibrationParameters& calibra
   parts.measurement = std::make_unique<RangeBearing>();
   parts.associator = std::make_unique<KnownAssociation>(std::numeric_limits<double>::infinity());
   parts.frame = make_error_frame("right_invariant");
+  parts.disturbance = std::move(disturbance);
   return EkfSlam(std::move(parts));
 }
 
@@ -99,4 +102,37 @@ TEST(Calibration, TrackWidthKeepsItsPriorOnAStraightLine) {
       EXPECT_TRUE(value.observable) << value.name;
     }
   }
+}
+
+// A displacement that the wheels know nothing of is no lesson about the wheels.
+TEST(Calibration, IsFrozenWhileADisturbanceLasts) {
+  CalibrationParameters calibration;
+  calibration.scale_left.enabled = calibration.scale_right.enabled = true;
+  DisturbanceOptions options;
+  options.sigma = Eigen::Vector3d(1.0, 1.0, 0.2);
+  std::mt19937_64 random(87);
+  SlamWorld world;
+  EkfSlam filter =
+      make_filter(world, calibration, DisturbanceResponse(Disturbance(options), ResponseOptions{}));
+  std::string event;
+  const auto step = [&] {
+    MotionAction action = world.drive(random, 1.0);
+    falsify(action, 1.0, 1.0);
+    filter.propagate(&action);
+    event = filter.update(world.observe(random, 1.0)).event;
+    return filter.calibration();
+  };
+  std::vector<CalibrationValue> before;
+  for (int k = 0; k < 100; ++k) before = step();
+  world.pose[0] += 0.8;
+  for (int k = 0; k < 4; ++k) {
+    const auto now = step();
+    EXPECT_EQ(event, k == 0 ? "disturbance" : "");
+    for (std::size_t i = 0; i < before.size(); ++i) {
+      EXPECT_EQ(now[i].mean, before[i].mean);
+      EXPECT_EQ(now[i].sigma, before[i].sigma);
+    }
+  }
+  for (int k = 0; k < 20; ++k) step();
+  EXPECT_NE(filter.calibration()[0].mean, before[0].mean);
 }

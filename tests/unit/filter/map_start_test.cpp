@@ -191,6 +191,20 @@ TEST(MapStart, CalibrationComesByName) {
   EXPECT_EQ(none.state().covariance_of(none.pose()), before.state().covariance_of(before.pose()));
 }
 
+TEST(MapStart, TheAppearanceOfALandmarkIsKept) {
+  SavedMap map = survey_of(SlamWorld(), 0.1);
+  Descriptor descriptor;
+  descriptor.size = 32;
+  descriptor.bytes[7] = 0x5a;
+  map.landmarks[3].appearance = std::make_shared<Descriptor>(descriptor);
+  EkfSlamParts parts = parts_with("standard", true);
+  parts.map = localize_in(map);
+  const SavedMap saved = EkfSlam(std::move(parts)).saved_map();
+  EXPECT_EQ(saved.landmarks[2].appearance, nullptr);
+  ASSERT_NE(saved.landmarks[3].appearance, nullptr);
+  EXPECT_EQ(saved.landmarks[3].appearance->bytes, descriptor.bytes);
+}
+
 TEST(MapStart, AProvisionalLandmarkIsNotGiven) {
   SavedMap map = survey_of(SlamWorld(), 0.1);
   map.landmarks[4].confirmed = false;

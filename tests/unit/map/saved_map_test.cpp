@@ -79,7 +79,7 @@ TEST(SavedMap, WhatCannotBeIsRejectedByName) {
 TEST(SavedMap, AnIndefiniteCovarianceIsRejectedAndASingularOneIsNot) {
   const auto indefinite = [](SavedMap& m) {
     m.cov.setIdentity();
-    for (const auto [i, j] : {std::pair(0, 1), std::pair(1, 2), std::pair(0, 2)})
+    for (const auto& [i, j] : {std::pair(0, 1), std::pair(1, 2), std::pair(0, 2)})
       m.cov(i, j) = m.cov(j, i) = -0.9;
   };
   expect_rejected(indefinite, "semi-definite");

@@ -22,7 +22,7 @@ std::vector<EstimatedPose> estimates_at(const std::vector<double>& times) {
 }
 
 Trajectory truth_at(const std::vector<double>& times) {
-  return {times, std::vector<Eigen::Vector3d>(times.size(), Eigen::Vector3d::Zero()), true};
+  return {times, std::vector<Eigen::Vector3d>(times.size(), Eigen::Vector3d::Zero()), {}};
 }
 
 std::vector<std::pair<std::size_t, std::size_t>> pairs(const std::vector<PoseMatch>& matches) {

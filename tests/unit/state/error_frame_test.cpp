@@ -130,6 +130,30 @@ TEST(ErrorFrame, RightInvariantDelayedPoseTurnsWithTheWorld) {
   EXPECT_NEAR(moved[2], wrap_angle(3.0 + kTurn), 1e-12);
 }
 
+// Localization in a given map: the group turns about the origin and back, which rounds.
+TEST(ErrorFrame, APointWithoutCorrectionStaysBitForBit) {
+  std::mt19937_64 random(37);
+  RightInvariantFrame frame;
+  for (const Chart chart : {Chart::kSE2, Chart::kSE3})
+    for (int trial = 0; trial < 50; ++trial) {
+      const int dimension = chart == Chart::kSE2 ? 2 : 3, error = 3 * (dimension - 1);
+      BlockVector start = BlockVector::Zero(chart == Chart::kSE2 ? 3 : 7);
+      if (chart == Chart::kSE3) start[6] = 1.0;
+      GaussianState state;
+      const BlockId pose = state.add({"pose", chart, 3, WorldRole::kPose}, start,
+                                     Eigen::MatrixXd::Identity(error, error));
+      const Eigen::VectorXd place = 100.0 * random_matrix(dimension, 1, random);
+      const BlockId point = state.add({"", Chart::kVector, dimension, WorldRole::kPoint}, place,
+                                      Eigen::MatrixXd::Identity(dimension, dimension));
+      Eigen::VectorXd delta = random_matrix(error + dimension, 1, random);
+      delta.tail(dimension).setZero();
+      const ChartChange change = frame.retract(state, pose, delta);
+      EXPECT_EQ(Eigen::VectorXd(state.estimate(point)), place);
+      EXPECT_TRUE(change.u.bottomRows(dimension).isZero(0.0));
+      EXPECT_NE(Eigen::VectorXd(state.estimate(pose)), Eigen::VectorXd(start));
+    }
+}
+
 TEST(ErrorFrame, StandardAddsAndKeepsTheCovariance) {
   std::mt19937_64 random(33);
   World world = make_world(random);

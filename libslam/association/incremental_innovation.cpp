@@ -1,27 +1,27 @@
 #include <cmath>
 #include <limits>
 
-#include <libslam/association/joint_innovation.hpp>
+#include <libslam/association/incremental_innovation.hpp>
 
 namespace libslam {
 
-void JointInnovation::reset(const Compatibility& pairs) {
+void IncrementalInnovation::reset(const Compatibility& pairs) {
   pairs_ = &pairs;
   clear();
 }
 
-void JointInnovation::clear() {
+void IncrementalInnovation::clear() {
   taken_.clear();
   rows_ = 0;
 }
 
-void JointInnovation::make_room(Eigen::Index rows) {
+void IncrementalInnovation::make_room(Eigen::Index rows) {
   if (lower_.rows() >= rows) return;
   lower_.conservativeResize(2 * rows, 2 * rows);
   white_.conservativeResize(2 * rows);
 }
 
-Match JointInnovation::extend(std::size_t pair) {
+Match IncrementalInnovation::extend(std::size_t pair) {
   const MeasurementVector& nu = pairs_->innovation(pair);
   next_ = {pair, rows_, nu.size(), {mahalanobis2(), log_det()}};
   make_room(rows_ + next_.rows);
@@ -54,12 +54,12 @@ Match JointInnovation::extend(std::size_t pair) {
   return added;
 }
 
-void JointInnovation::push() {
+void IncrementalInnovation::push() {
   taken_.push_back(next_);
   rows_ += next_.rows;
 }
 
-void JointInnovation::pop() {
+void IncrementalInnovation::pop() {
   rows_ = taken_.back().first_row;
   taken_.pop_back();
 }

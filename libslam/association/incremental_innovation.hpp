@@ -17,7 +17,7 @@
 
 namespace libslam {
 
-class JointInnovation {
+class IncrementalInnovation {
  public:
   /// Starts from no pair; `pairs` holds the selected ones and must outlive this.
   void reset(const Compatibility& pairs);

@@ -1,0 +1,163 @@
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Geometry>
+#include <mrpt/math/TPose2D.h>
+#include <mrpt/tfest/TMatchingPair.h>
+#include <mrpt/tfest/se2.h>
+
+#include <libslam/association/pose_fit.hpp>
+#include <libslam/filter/relocalizer.hpp>
+#include <libslam/state/chi_square.hpp>
+
+namespace libslam {
+
+namespace {
+
+constexpr std::size_t kLeastByIdentity = 3;  // one more than fixes a pose, to test it
+constexpr double kFitProbability = 0.999;
+constexpr std::size_t kLeastLatest = 2;  // pairs that fix the pose in the correction
+constexpr double kUninformedRanges = 100.0, kUninformedHeading = 10.0;
+constexpr double kReserve = 1.5;  // distances are indexed beyond what is needed today
+
+double largest_distance(std::span<const PlanarPoint> points) {
+  double largest = 0.0;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    for (std::size_t k = 0; k < i; ++k)
+      largest = std::max(largest, (points[i].position - points[k].position).norm());
+  return largest;
+}
+
+}  // namespace
+
+void Relocalizer::restart() {
+  sightings_.clear();
+  map_.reset();
+}
+
+void Relocalizer::move(const Eigen::Vector3d& before, const Eigen::Vector3d& after,
+                       const Eigen::Matrix3d& cov) {
+  if (sightings_.size() == 0) return;
+  Eigen::Matrix3d to_robot = Eigen::Matrix3d::Identity();
+  to_robot.topLeftCorner<2, 2>() = Eigen::Rotation2Dd(-before[2]).toRotationMatrix();
+  Eigen::Vector3d increment = to_robot * (after - before);
+  increment[2] = wrap_angle(increment[2]);
+  sightings_.move(increment, to_robot * cov * to_robot.transpose());
+}
+
+void Relocalizer::observe(const GaussianState& state, BlockId pose,
+                          const MeasurementModel& measurement, std::span<const Feature> features) {
+  const Eigen::Vector3d T_world_robot = state.estimate(pose);
+  const Eigen::Matrix2d R_robot_world = Eigen::Rotation2Dd(-T_world_robot[2]).toRotationMatrix();
+  std::vector<SightedPoint> points;
+  SensorView view;
+  Initialization where;
+  for (const Feature& feature : features) {
+    measurement.initialize(state, pose, feature, where);
+    const Eigen::Vector2d place =
+        R_robot_world * (Eigen::Vector2d(where.estimate) - T_world_robot.head<2>());
+    points.push_back(
+        {feature.id, {place, R_robot_world * where.cov_noise * R_robot_world.transpose()}});
+    view.T_robot_sensor = feature.T_robot_sensor;
+    const Eigen::Vector2d ray = place - feature.T_robot_sensor.head<2>();
+    max_range_ = std::max(max_range_, ray.norm());
+    max_bearing_ =
+        std::max(max_bearing_,
+                 std::abs(wrap_angle(std::atan2(ray.y(), ray.x()) - feature.T_robot_sensor[2])));
+  }
+  view.max_range = max_range_;
+  view.field_of_view = 2.0 * max_bearing_;
+  sightings_.add(points, view);
+}
+
+std::optional<FoundPose> Relocalizer::find(const GaussianState& state,
+                                           const LandmarkRegistry& registry) {
+  bool identified = sightings_.size() > 0;
+  for (std::size_t i = 0; i < sightings_.size(); ++i)
+    identified = identified && sightings_.id(i) != kNoIdentity;
+  return identified ? find_by_identity(state, registry) : find_by_constellation(state, registry);
+}
+
+std::optional<FoundPose> Relocalizer::find_by_identity(const GaussianState& state,
+                                                       const LandmarkRegistry& registry) const {
+  const std::vector<PlanarPoint> seen = sightings_.points();
+  std::vector<PlanarPoint> mapped(seen.size());
+  std::vector<Pairing> pairs;
+  std::vector<PointPair> points;
+  mrpt::tfest::TMatchingPairList matches;
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    const auto landmark = registry.find(sightings_.id(i));
+    if (!landmark) continue;
+    const BlockId block = registry.landmarks()[*landmark].block;
+    mapped[i] = {state.estimate(block), state.covariance_of(block)};
+    pairs.push_back({i, *landmark});
+    points.push_back({&seen[i], &mapped[i]});
+    const auto number = static_cast<std::uint32_t>(i);
+    matches.emplace_back(number, number, static_cast<float>(mapped[i].position.x()),
+                         static_cast<float>(mapped[i].position.y()), 0.0F,
+                         static_cast<float>(seen[i].position.x()),
+                         static_cast<float>(seen[i].position.y()), 0.0F);
+  }
+  mrpt::math::TPose2D start;
+  if (pairs.size() < kLeastByIdentity || !mrpt::tfest::se2_l2(matches, start)) return std::nullopt;
+  const PoseFit fit = fit_pose(points, {start.x, start.y, start.phi});
+  const int dof = 2 * static_cast<int>(pairs.size()) - 3;
+  if (!(fit.mahalanobis2 <= chi_square_quantile(kFitProbability, dof))) return std::nullopt;
+  return with_latest(fit.T_world_robot, pairs);
+}
+
+// Relative to its neighbours a landmark is known much better than in the world, where the drift of
+// the whole map counts: half of the mean covariance of the differences to those within `reach`.
+void Relocalizer::index(const GaussianState& state, const LandmarkRegistry& registry,
+                        double reach) {
+  landmarks_.clear();
+  for (std::size_t k = 0; k < registry.size(); ++k)
+    if (registry.landmarks()[k].confirmed) landmarks_.push_back(k);
+  std::vector<PlanarPoint> points;
+  for (const std::size_t k : landmarks_) {
+    const BlockId block = registry.landmarks()[k].block;
+    const Eigen::Vector2d place = state.estimate(block);
+    const Eigen::Matrix2d own = state.covariance_of(block);
+    Eigen::Matrix2d sum = Eigen::Matrix2d::Zero();
+    int neighbours = 0;
+    for (const std::size_t other : landmarks_) {
+      const BlockId near = registry.landmarks()[other].block;
+      if (other == k || (state.estimate(near) - place).norm() > reach) continue;
+      const Eigen::Matrix2d cross = state.cross_covariance(block, near);
+      sum += own + state.covariance_of(near) - cross - cross.transpose();
+      ++neighbours;
+    }
+    points.push_back({place, neighbours > 0 ? Eigen::Matrix2d(0.5 / neighbours * sum) : own});
+  }
+  map_ = std::make_unique<ConstellationIndex>(std::move(points), reach, max_range_);
+  reach_ = reach;
+}
+
+std::optional<FoundPose> Relocalizer::find_by_constellation(const GaussianState& state,
+                                                            const LandmarkRegistry& registry) {
+  const std::vector<PlanarPoint> seen = sightings_.points();
+  const double needed = largest_distance(seen);
+  if (seen.size() < ConstellationOptions{}.least_pairs || needed <= 0.0) return std::nullopt;
+  if (!map_ || needed > reach_) index(state, registry, kReserve * needed);
+  const ConstellationMatch match = match_constellation(*map_, seen, sightings_.views());
+  if (match.verdict != ConstellationVerdict::kFound) return std::nullopt;
+  std::vector<Pairing> pairs = match.pairs;
+  for (Pairing& pair : pairs) pair.landmark = landmarks_[pair.landmark];
+  return with_latest(match.T_world_robot, pairs);
+}
+
+std::optional<FoundPose> Relocalizer::with_latest(const Eigen::Vector3d& pose,
+                                                  std::span<const Pairing> pairs) const {
+  FoundPose found;
+  found.T_world_robot = pose;
+  const double sigma = kUninformedRanges * max_range_;
+  found.cov_uninformed = Eigen::Vector3d(sigma, sigma, kUninformedHeading).cwiseAbs2().asDiagonal();
+  const std::vector<std::size_t>& latest = sightings_.latest();
+  for (std::size_t feature = 0; feature < latest.size(); ++feature)
+    for (const Pairing& pair : pairs)
+      if (pair.feature == latest[feature]) found.pairs.push_back({feature, pair.landmark});
+  if (found.pairs.size() < kLeastLatest) return std::nullopt;
+  return found;
+}
+
+}  // namespace libslam

@@ -1,0 +1,70 @@
+#pragma once
+// Finds a lost robot in its own map: by the constellation of what it has seen recently, or by the
+// identities of that.
+//
+// The pose that is found is a function of the map and of the current observation. To get the
+// covariance and all cross terms right, the filter forgets its pose: the block is put at the
+// hypothesis, independent of the map and so uncertain that it says nothing, and the ordinary joint
+// correction with the pairs of the observation, linearized there, does the rest. Planar poses and
+// points.
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include <libslam/association/associator.hpp>
+#include <libslam/association/constellation.hpp>
+#include <libslam/association/landmark_registry.hpp>
+#include <libslam/filter/recent_sightings.hpp>
+#include <libslam/measurement/measurement_model.hpp>
+#include <libslam/state/gaussian_state.hpp>
+
+namespace libslam {
+
+/// A pose, and what the last observation sees of the map from there.
+struct FoundPose {
+  Eigen::Vector3d T_world_robot = Eigen::Vector3d::Zero();   ///< x [m], y [m], phi [rad]
+  Eigen::Matrix3d cov_uninformed = Eigen::Matrix3d::Zero();  ///< to start the pose block with
+  std::vector<Pairing> pairs;  ///< features of the observation, positions in the registry
+};
+
+class Relocalizer {
+ public:
+  /// Observations that are remembered.
+  static constexpr int kMemory = 50;
+
+  Relocalizer() : sightings_(kMemory) {}
+
+  /// Forgets what was seen before something moved the robot.
+  void restart();
+  /// The pose moves from `before` to `after` (world frame); covariance of that step, world frame.
+  void move(const Eigen::Vector3d& before, const Eigen::Vector3d& after,
+            const Eigen::Matrix3d& cov);
+  /// Remembers an observation; the pose of `state` only serves to place features on the robot.
+  void observe(const GaussianState& state, BlockId pose, const MeasurementModel& measurement,
+               std::span<const Feature> features);
+  /// Nothing where no pose explains what was seen, or another one nearly as well, or the last
+  /// observation alone does not fix it.
+  std::optional<FoundPose> find(const GaussianState& state, const LandmarkRegistry& registry);
+
+ private:
+  std::optional<FoundPose> find_by_identity(const GaussianState& state,
+                                            const LandmarkRegistry& registry) const;
+  std::optional<FoundPose> find_by_constellation(const GaussianState& state,
+                                                 const LandmarkRegistry& registry);
+  void index(const GaussianState& state, const LandmarkRegistry& registry, double reach);
+  /// The pairs that belong to the last observation; nothing if they are too few.
+  std::optional<FoundPose> with_latest(const Eigen::Vector3d& pose,
+                                       std::span<const Pairing> pairs) const;
+
+  RecentSightings sightings_;
+  double max_range_ = 0.0, max_bearing_ = 0.0;  // of all that was seen, sensor frame
+  std::unique_ptr<ConstellationIndex> map_;
+  double reach_ = 0.0;                  // of the distances in map_
+  std::vector<std::size_t> landmarks_;  // registry position of each point of map_
+};
+
+}  // namespace libslam

@@ -1,0 +1,158 @@
+// Slips and kidnaps: how fast the filter finds back, what it costs the map, and how often it sees
+// ghosts. The world is that of config/mc_disturbance.yaml; seeds 1-50 of it.
+
+#include <algorithm>
+#include <atomic>
+#include <functional>
+#include <numeric>
+#include <random>
+#include <tests/consistency/disturbed_drive.hpp>
+#include <thread>
+
+#include <gtest/gtest.h>
+
+#include <libslam/campaign/campaign_plan.hpp>
+
+using namespace libslam;
+using namespace libslam::test;
+
+namespace {
+
+constexpr int kSeeds = 50;
+constexpr int kNever = 1'000'000;
+
+using Change = std::function<void(Scenario&, int seed)>;
+
+Change kidnap(double forward, double turn_deg) {
+  return [=](Scenario& scenario, int) {
+    scenario.faults.kidnap.forward = forward;
+    scenario.faults.kidnap.turn_deg = turn_deg;
+  };
+}
+
+void undisturbed(Scenario& scenario, int) {
+  scenario.faults.kidnap.enabled = false;
+}
+
+void slips(Scenario& scenario, int) {
+  scenario.faults.kidnap.enabled = false;
+  scenario.faults.slip.enabled = true;
+}
+
+/// Up to 40 m along either axis, with any heading.
+void anywhere(Scenario& scenario, int seed) {
+  std::mt19937_64 random(1000U + static_cast<unsigned>(seed));
+  std::uniform_real_distribution<double> part(-1.0, 1.0);
+  scenario.faults.kidnap.forward = 40.0 * part(random);
+  scenario.faults.kidnap.left = 40.0 * part(random);
+  scenario.faults.kidnap.turn_deg = 180.0 * part(random);
+}
+
+/// Fifty drives with one filter of the campaign.
+class Drives {
+ public:
+  Drives(const std::string& variant, const Change& change) : drives_(kSeeds) {
+    const CampaignPlan plan =
+        load_campaign(std::filesystem::path(LIBSLAM_CONFIG_DIR) / "mc_disturbance.yaml", {});
+    const auto& variants = plan.points.front().variants;
+    const auto& filter = *std::ranges::find(variants, variant, &Variant::name);
+    std::atomic<int> next{0};
+    std::vector<std::jthread> threads;
+    for (unsigned k = 0; k < std::max(1U, std::thread::hardware_concurrency()); ++k)
+      threads.emplace_back([&] {
+        for (int i; (i = next++) < kSeeds;) {
+          Scenario scenario = plan.points.front().scenario;
+          change(scenario, i + 1);
+          drives_[static_cast<std::size_t>(i)] =
+              DisturbedDriver(scenario, filter.parameters, static_cast<std::uint64_t>(i + 1))
+                  .drive();
+        }
+      });
+    threads.clear();
+    for (const DisturbedDrive& drive : drives_)
+      for (const int updates : drive.recoveries)
+        recoveries_.push_back(updates < 0 ? kNever : updates);
+    std::ranges::sort(recoveries_);
+  }
+
+  const std::vector<DisturbedDrive>& drives() const { return drives_; }
+  int quantile(double part) const {
+    return recoveries_.at(static_cast<std::size_t>(part * static_cast<double>(recoveries_.size())));
+  }
+  /// Events that the filter did not recover from.
+  auto never() const { return std::ranges::count(recoveries_, kNever); }
+  double mean(double DisturbedDrive::*figure) const {
+    double sum = 0.0;
+    for (const DisturbedDrive& drive : drives_) sum += drive.*figure;
+    return sum / kSeeds;
+  }
+  /// Per run.
+  double events(const std::string& name) const {
+    double sum = 0.0;
+    for (const DisturbedDrive& drive : drives_)
+      if (const auto found = drive.events.find(name); found != drive.events.end())
+        sum += found->second;
+    return sum / kSeeds;
+  }
+
+ private:
+  std::vector<DisturbedDrive> drives_;
+  std::vector<int> recoveries_;
+};
+
+constexpr const char* kLikelihood = "maximum_likelihood";
+
+}  // namespace
+
+TEST(Disturbance, CostsNothingWhereNothingHappens) {
+  const Drives with(kLikelihood, undisturbed), without("none", undisturbed);
+  EXPECT_LE(with.events("disturbance"), 0.2);
+  EXPECT_EQ(with.events("lost"), 0.0);
+  EXPECT_LE(with.mean(&DisturbedDrive::position_rmse),
+            1.02 * without.mean(&DisturbedDrive::position_rmse));
+  EXPECT_LE(with.mean(&DisturbedDrive::landmark_rmse),
+            1.02 * without.mean(&DisturbedDrive::landmark_rmse));
+}
+
+TEST(Disturbance, FindsBackAfterAKidnapAndKeepsItsMap) {
+  const Drives calm("none", undisturbed);
+  for (const auto& [forward, turn] : {std::pair{1.0, 0.0}, {3.0, 0.0}, {3.0, 20.0}}) {
+    SCOPED_TRACE(std::to_string(forward) + " m, " + std::to_string(turn) + " deg");
+    const Drives drives(kLikelihood, kidnap(forward, turn));
+    EXPECT_LE(drives.quantile(0.5), 15);
+    EXPECT_LE(drives.quantile(0.9), 45);
+    EXPECT_LE(drives.never(), 1);
+    EXPECT_LE(drives.mean(&DisturbedDrive::landmark_rmse),
+              1.3 * calm.mean(&DisturbedDrive::landmark_rmse));
+  }
+}
+
+TEST(Disturbance, FindsBackAfterSlips) {
+  const Drives calm("none", undisturbed), drives(kLikelihood, slips);
+  EXPECT_GT(drives.events("disturbance"), 1.0);
+  EXPECT_LE(drives.quantile(0.5), 15);
+  EXPECT_LE(drives.quantile(0.9), 45);
+  EXPECT_LE(drives.never(), 1);
+  EXPECT_LE(drives.mean(&DisturbedDrive::landmark_rmse),
+            1.3 * calm.mean(&DisturbedDrive::landmark_rmse));
+}
+
+// What the seed may be read to say, for comparison.
+TEST(Disturbance, InflatingEverythingRuinsTheMap) {
+  const Drives literal("literal", kidnap(3.0, 20.0)), pose(kLikelihood, kidnap(3.0, 20.0));
+  EXPECT_GT(literal.mean(&DisturbedDrive::landmark_rmse),
+            2.0 * pose.mean(&DisturbedDrive::landmark_rmse));
+}
+
+TEST(Disturbance, FindsBackWithoutIdentities) {
+  const Drives drives("unknown", kidnap(3.0, 20.0));
+  EXPECT_LE(drives.never(), 3);
+  EXPECT_LE(drives.quantile(0.5), 15);
+}
+
+TEST(Disturbance, FindsItselfAnywhereInItsMap) {
+  const Drives drives("unknown", anywhere);
+  int wrong = 0;
+  for (const DisturbedDrive& drive : drives.drives()) wrong += drive.wrong_recovery ? 1 : 0;
+  EXPECT_EQ(wrong, 0);
+}

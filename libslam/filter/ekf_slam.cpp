@@ -181,11 +181,16 @@ void EkfSlam::linearize_pairs(std::span<const Feature> features) {
       const BlockId landmark = parts_.registry.landmarks()[verdicts_[i].landmark].block;
       linearizer_.linearize(*parts_.measurement, state_, pose_, landmark, features[i],
                             measured_.emplace_back());
-      if (outcome == Outcome::kPaired) used_.push_back(i);
+      if (!measured_.back().innovation.allFinite()) {  // out of sight
+        verdicts_[i].outcome = Outcome::kGated;
+        measured_.pop_back();
+      } else if (outcome == Outcome::kPaired) {
+        used_.push_back(i);
+      }
     }
   };
   linearize(Outcome::kPaired);
-  if (parts_.disturbance) linearize(Outcome::kGated);
+  if (parts_.disturbance || parts_.implied_input) linearize(Outcome::kGated);
 }
 
 void EkfSlam::correct(std::span<const Feature> features, UpdateOutcome& outcome) {

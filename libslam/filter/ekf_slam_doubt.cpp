@@ -1,4 +1,4 @@
-// What EkfSlam does with an observation that does not fit what it believes.
+// What EkfSlam does with observations that it doubts, between association and correction.
 
 #include <stdexcept>
 
@@ -43,8 +43,13 @@ void EkfSlam::lose_pose() {
 }
 
 void EkfSlam::reject_impossible(std::span<const Feature> features, UpdateOutcome& outcome) {
-  if (used_.empty()) return;
-  ekf_.expect(state_, pose_, accepted(), joint_);
+  if (measured_.empty()) return;
+  // Rejected innovations count where they are many: a tracker that froze fails every gate once the
+  // odometry is good enough.
+  const bool most_rejected = 2 * used_.size() <= measured_.size();
+  ekf_.expect(state_, pose_,
+              most_rejected ? std::span<const LinearizedMeasurement>(measured_) : accepted(),
+              joint_);
   const bool impossible = parts_.implied_input->impossible(joint_);
   parts_.implied_input->restart();
   if (!impossible) return;

@@ -106,7 +106,17 @@ Doubt DisturbanceResponse::inflate(const RespondingFilter& filter) {
     filter.state.covariance().add_noise(filter.state.offset(filter.pose), policy_.added(scale));
   }
   const AssociatedObservation again = filter.associate();
-  return settle_on(2 * again.paired.size() >= again.identified.size() && !again.paired.empty());
+  if (again.paired.empty()) return settle_on(false);
+  const auto counted = evidence(again);
+  filter.ekf.expect(filter.state, filter.pose, counted, joint_);
+  const bool fits =
+      policy_.possible(Disturbance::squared_distance(joint_), static_cast<int>(joint_.nu.size()));
+  // A pose too far off to be linearized at: with enough landmarks the map shows the right one.
+  if (fits || counted.size() < kEnoughPairs || !options_.relocalize) {
+    settle_on(fits);
+    return Doubt::kDisturbed;
+  }
+  return settle_on(false);
 }
 
 Doubt DisturbanceResponse::search(const RespondingFilter& filter) {

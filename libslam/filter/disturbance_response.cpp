@@ -24,6 +24,11 @@ void inflate_all(GaussianState& state, double factor) {
   }
 }
 
+bool has_identities(std::span<const Feature> features) {
+  return std::ranges::any_of(features,
+                             [](const Feature& feature) { return feature.id != kNoIdentity; });
+}
+
 }  // namespace
 
 DisturbanceResponse::DisturbanceResponse(Disturbance policy, const ResponseOptions& options)
@@ -38,7 +43,6 @@ void DisturbanceResponse::lose() {
 }
 
 void DisturbanceResponse::found() {
-  policy_.settle();
   unexplained_ = unpaired_ = 0;
 }
 
@@ -49,9 +53,8 @@ void DisturbanceResponse::moved(const Eigen::VectorXd& before, const Eigen::Vect
 
 Doubt DisturbanceResponse::answer(const RespondingFilter& filter,
                                   const AssociatedObservation& observation) {
-  const bool identified = std::ranges::any_of(
-      observation.features, [](const Feature& feature) { return feature.id != kNoIdentity; });
-  if (lost() && options_.relocalize && !identified) return stay_lost(filter, observation);
+  if (lost() && options_.relocalize && !has_identities(observation.features))
+    return stay_lost(filter, observation);
   const auto counted = evidence(observation);
   double nis = 0.0;
   if (!counted.empty()) {
@@ -146,7 +149,9 @@ std::optional<FoundPose> DisturbanceResponse::search_map(const RespondingFilter&
                                                          std::span<const Feature> features) {
   if (!options_.relocalize || !disturbed()) return std::nullopt;
   relocalizer_.observe(filter.state, filter.pose, filter.measurement, features);
-  if (!lost()) return std::nullopt;
+  // Identities leave nothing to guess: no need to wait.
+  const bool sure = unexplained_ > 0 && has_identities(features);
+  if (!lost() && !sure) return std::nullopt;
   auto found_pose = relocalizer_.find(filter.state, filter.registry);
   if (found_pose) found();
   return found_pose;

@@ -160,8 +160,9 @@ TEST(DisturbanceResponse, FindsBackWithTheLandmarksThatTheGateRejected) {
     EXPECT_LT(with.error().head<2>().norm(), 0.15) << frame;
     EXPECT_GT(without.error().head<2>().norm(), 1.0) << frame;
     with.steps(kLap);
-    if (frame == std::string("right_invariant"))
+    if (frame == std::string("right_invariant")) {
       EXPECT_LT(with.map_rmse(), 1.3 * map_before + 0.01);
+    }
   }
 }
 

@@ -44,6 +44,7 @@ void DisturbanceResponse::lose() {
 
 void DisturbanceResponse::found() {
   unexplained_ = unpaired_ = 0;
+  vanished_ = false;
 }
 
 void DisturbanceResponse::moved(const Eigen::VectorXd& before, const Eigen::VectorXd& after,
@@ -77,12 +78,13 @@ Doubt DisturbanceResponse::answer(const RespondingFilter& filter,
 bool DisturbanceResponse::estranged(const RespondingFilter& filter,
                                     const AssociatedObservation& observation, bool pairs_fit) {
   Initialization where;
-  std::size_t strangers = 0, undecided = 0;
+  std::size_t strangers = 0, undecided = 0, fresh = 0;
   for (std::size_t i = 0; i < observation.features.size(); ++i) {
     const Feature& feature = observation.features[i];
     if (feature.id != kNoIdentity) continue;
     if (observation.verdicts[i].outcome == Outcome::kAmbiguous) ++undecided;
     if (observation.verdicts[i].outcome != Outcome::kNew) continue;
+    ++fresh;
     filter.measurement.initialize(filter.state, filter.pose, feature, where);
     const auto near = [&](const RegisteredLandmark& landmark) {
       return (filter.state.estimate(landmark.block) - where.estimate).norm() <=
@@ -93,7 +95,12 @@ bool DisturbanceResponse::estranged(const RespondingFilter& filter,
   const std::size_t n = observation.features.size(), unpaired = strangers + undecided;
   const bool fits_nothing = !pairs_fit && unpaired > 0 && 2 * unpaired >= n;
   unpaired_ = fits_nothing ? unpaired_ + 1 : 0;
-  return unpaired_ >= kPersistent || (fits_nothing && strangers >= 2 && 2 * strangers >= n);
+  const std::size_t pairs = observation.paired.size();
+  const bool all_changed = pairs == 0 && fresh >= 2 && last_pairs_ >= 2;
+  vanished_ = all_changed || (vanished_ && pairs < 2);
+  last_pairs_ = pairs;
+  return vanished_ || unpaired_ >= kPersistent ||
+         (fits_nothing && strangers >= 2 && 2 * strangers >= n);
 }
 
 std::span<const LinearizedMeasurement> DisturbanceResponse::evidence(

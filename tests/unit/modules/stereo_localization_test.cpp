@@ -1,6 +1,7 @@
 // A simulated head (the one of the example) localizes in a surveyed map.
 
 #include <cmath>
+#include <examples/stereo_localization/simulated_head.hpp>
 #include <fstream>
 #include <string>
 
@@ -13,7 +14,6 @@
 #include <mrpt/poses/CPose3DQuatPDFGaussian.h>
 #include <mrpt/serialization/CArchive.h>
 
-#include <examples/stereo_localization/simulated_head.hpp>
 #include <libslam/io/input_error.hpp>
 #include <libslam/modules/pose_pdf.hpp>
 #include <libslam/modules/stereo_localization.hpp>
@@ -166,9 +166,9 @@ TEST_F(HeadInAMap, SaysWhatIsMissing) {
 
 TEST(StereoLocalizationOptions, ComeFromAnIniFile) {
   StereoLocalization localization;
-  localization.loadOptions(mrpt::config::CConfigFileMemory(std::string(
-      "[StereoLocalization]\nmap_file = a.csv\nmap_sigma = 0.02\nadd_landmarks = true\n"
-      "verbosity_level = ERROR\n[libslam.measurement.stereo]\nsigma_pixel = 2\n")));
+  localization.loadOptions(mrpt::config::CConfigFileMemory(
+      std::string("[StereoLocalization]\nmap_file = a.csv\nmap_sigma = 0.02\nadd_landmarks = true\n"
+                  "verbosity_level = ERROR\n[libslam.measurement.stereo]\nsigma_pixel = 2\n")));
   const Parameters& p = localization.options.parameters;
   EXPECT_EQ(p.map.file, "a.csv");
   EXPECT_EQ(p.map.sigma, 0.02);

@@ -1,3 +1,4 @@
+#include <cmath>
 #include <stdexcept>
 #include <string>
 
@@ -19,6 +20,16 @@ std::vector<NoiseComponent> noise_components(const Parameters& p) {
          n.range_growth_per_m},
         {"bearing", p.measurement.sigma_bearing_deg * kDegree, n.min_sigma_bearing_deg * kDegree,
          n.max_sigma_bearing_deg * kDegree, n.bearing_growth_per_m}};
+  if (p.measurement.model == "stereo_point") {
+    const StereoNoiseParameters& s = p.measurement.stereo;
+    const auto pixel = [&](const char* name, double configured) {
+      return NoiseComponent{name, configured, n.min_sigma_pixel, n.max_sigma_pixel,
+                            n.pixel_growth_per_m};
+    };
+    const auto sigma = [&](double own) { return own > 0.0 ? own : s.sigma_pixel; };
+    return {pixel("u", sigma(s.sigma_u_left)), pixel("v", sigma(s.sigma_v_left)),
+            pixel("disparity", std::hypot(sigma(s.sigma_u_left), sigma(s.sigma_u_right)))};
+  }
   throw std::invalid_argument("no noise adaptation for measurement model '" + p.measurement.model +
                               "'");
 }

@@ -1,3 +1,4 @@
+#include <cmath>
 #include <stdexcept>
 #include <string>
 
@@ -19,6 +20,17 @@ std::vector<NoiseComponent> noise_components(const Parameters& p) {
          n.range_growth_per_m},
         {"bearing", p.measurement.sigma_bearing_deg * kDegree, n.min_sigma_bearing_deg * kDegree,
          n.max_sigma_bearing_deg * kDegree, n.bearing_growth_per_m}};
+  if (p.measurement.model == "stereo_point") {
+    const StereoNoiseParameters& s = p.measurement.stereo;
+    const double u_left = s.variance(s.sigma_u_left), u_right = s.variance(s.sigma_u_right);
+    const double v_left = s.variance(s.sigma_v_left), v_right = s.variance(s.sigma_v_right);
+    const auto component = [&](const char* name, double variance) {
+      return NoiseComponent{name, std::sqrt(variance), n.min_sigma_pixel, n.max_sigma_pixel,
+                            n.pixel_growth_per_m};
+    };
+    return {component("u", u_left), component("v", v_left * v_right / (v_left + v_right)),
+            component("d", u_left + u_right)};
+  }
   throw std::invalid_argument("no noise adaptation for measurement model '" + p.measurement.model +
                               "'");
 }

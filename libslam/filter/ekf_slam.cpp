@@ -127,6 +127,13 @@ void EkfSlam::scale_process_noise() {
     if (column.block == pose_) parts_.process->scale(column.jacobian, step_.cov_noise);
 }
 
+void EkfSlam::learn_process_noise() {
+  if (disturbed())
+    parts_.process->skip();
+  else
+    parts_.process->observe(ekf_.look_back(accepted(), pose_, state_.size(pose_)));
+}
+
 UpdateOutcome EkfSlam::measure_displacement(const Feature& reading) {
   const PhaseTimer timer(times_, Phase::kUpdate);
   const DisplacementOutcome done = parts_.displacement->apply(
@@ -207,8 +214,7 @@ void EkfSlam::correct(std::span<const Feature> features, UpdateOutcome& outcome)
       for (std::size_t i = 0; i < used_.size(); ++i) postfits_[i].feature = used_[i];
       parts_.noise->observe(features, postfits_);
     }
-    if (parts_.process && !disturbed())
-      parts_.process->observe(ekf_.look_back(accepted(), pose_, state_.size(pose_)));
+    if (parts_.process) learn_process_noise();
   } else {
     // An innovation covariance that is not positive definite: nothing was used.
     for (Verdict& verdict : verdicts_)

@@ -107,6 +107,7 @@ class EkfSlam {
   const DisplacementModel* displacement_model() const;
   void start_in_map();
   void scale_process_noise();
+  void learn_process_noise();
   UpdateOutcome measure_displacement(const Feature& reading);
   /// Blocks that count with their uncertainty in a correction and do not learn.
   std::span<const BlockId> considered();

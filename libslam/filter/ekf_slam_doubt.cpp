@@ -24,7 +24,7 @@ void EkfSlam::respond(std::span<const Feature> features, UpdateOutcome& outcome)
   if (doubt == Doubt::kUnexplained) linearize_pairs(features);
   if (const auto found = response.search_map(self, features)) {
     start_again_at(*found, features);
-    outcome.event = "relocalized";
+    if (!response.began()) outcome.event = "relocalized";
   }
 }
 

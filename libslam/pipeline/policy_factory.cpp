@@ -24,10 +24,12 @@ std::vector<NoiseComponent> noise_components(const Parameters& p) {
     const StereoNoiseParameters& s = p.measurement.stereo;
     const double u_left = s.variance(s.sigma_u_left), u_right = s.variance(s.sigma_u_right);
     const double v_left = s.variance(s.sigma_v_left), v_right = s.variance(s.sigma_v_right);
-    return {{"u", std::sqrt(u_left), n.min_sigma_pixel, n.max_sigma_pixel, 0.0},
-            {"v", std::sqrt(v_left * v_right / (v_left + v_right)), n.min_sigma_pixel,
-             n.max_sigma_pixel, 0.0},
-            {"d", std::sqrt(u_left + u_right), n.min_sigma_pixel, n.max_sigma_pixel, 0.0}};
+    const auto component = [&](const char* name, double variance) {
+      return NoiseComponent{name, std::sqrt(variance), n.min_sigma_pixel, n.max_sigma_pixel,
+                            n.pixel_growth_per_m};
+    };
+    return {component("u", u_left), component("v", v_left * v_right / (v_left + v_right)),
+            component("d", u_left + u_right)};
   }
   throw std::invalid_argument("no noise adaptation for measurement model '" + p.measurement.model +
                               "'");

@@ -31,6 +31,8 @@ class ProcessScale {
   /// from. `F`: derivative of the new pose with respect to the old one.
   void scale(const BlockMatrix& F, BlockMatrix& cov_noise);
   void observe(const BlockEvidence& of_pose);
+  /// In place of `observe`: nothing is learned from the motion since the last correction.
+  void skip() { taken_up_.resize(0, 0); }
   /// s.
   double factor() const { return factor_; }
   /// Its root, as "odometry" against 1.

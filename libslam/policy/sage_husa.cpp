@@ -145,6 +145,8 @@ void SageHusa::observe(std::span<const Feature> features, std::span<const Postfi
     channel.count = 0;
   }
   for (const Postfit& postfit : corrected) {
+    require(postfit.innovation.size() == static_cast<Index>(components_.size()),
+            "a measurement that leaves out rows of its feature");
     const Feature& feature = features[postfit.feature];
     Channel& channel = channels_[slot(feature.channel)];
     const double kappa = feature.id == kNoIdentity ? kappa_anonymous_ : kappa_identified_;

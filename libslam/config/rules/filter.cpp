@@ -44,8 +44,13 @@ void check_noise_adaptation(const Parameters& p, Conflicts& conflicts) {
     conflicts.push_back({{section + "method", "measurement.model"},
                          "only the noise of landmark sightings is adapted"});
   }
-  if (n.bias) {
-    conflicts.push_back({{section + "bias"},
+  if (p.measurement.model == "stereo_point" && p.measurement.stereo.landmark_dimension == 2) {
+    conflicts.push_back({{section + "method", "measurement.stereo.landmark_dimension"},
+                         "a planar landmark leaves the rows of the images out, and with them a "
+                         "part of R that nothing would teach"});
+  }
+  if (n.bias && (p.map.file.empty() || p.map.mode != "localize")) {
+    conflicts.push_back({{section + "bias", "map.mode"},
                          "a map that is being made takes up a constant offset of its "
                          "measurements; only a known map tells the two apart"});
   }
@@ -60,6 +65,10 @@ void check_noise_adaptation(const Parameters& p, Conflicts& conflicts) {
   }
   if (n.min_sigma_range >= n.max_sigma_range) {
     conflicts.push_back({{section + "min_sigma_range", section + "max_sigma_range"},
+                         "no sigma lies between a floor and a ceiling in this order"});
+  }
+  if (n.min_sigma_pixel >= n.max_sigma_pixel) {
+    conflicts.push_back({{section + "min_sigma_pixel", section + "max_sigma_pixel"},
                          "no sigma lies between a floor and a ceiling in this order"});
   }
   if (n.min_sigma_bearing_deg >= n.max_sigma_bearing_deg) {

@@ -280,7 +280,22 @@ const Case kAdaptation[] = {
        p.policies.noise_adaptation.method = "residual";
        p.policies.noise_adaptation.bias = true;
      },
-     {"policies.noise_adaptation.bias"}},
+     {"policies.noise_adaptation.bias", "map.mode"}},
+    {"bias_in_a_known_map",
+     [](Parameters& p) {
+       p.map.file = "surveyed.csv";
+       p.policies.noise_adaptation.method = "residual";
+       p.policies.noise_adaptation.bias = true;
+     },
+     {}},
+    {"planar_stereo",
+     [](Parameters& p) {
+       p.frontend.source = "stereo_points";
+       p.measurement.model = "stereo_point";
+       p.measurement.stereo.landmark_dimension = 2;
+       p.policies.noise_adaptation.method = "residual";
+     },
+     {"policies.noise_adaptation.method", "measurement.stereo.landmark_dimension"}},
     {"bias_without_adaptation",
      [](Parameters& p) { p.policies.noise_adaptation.bias = true; },
      {"policies.noise_adaptation.bias", "policies.noise_adaptation.method"}},

@@ -46,6 +46,16 @@ TEST(ProcessScale, RecursionByHand) {
   EXPECT_NEAR(q3(0, 0), factor, 1e-13);
 }
 
+TEST(ProcessScale, LearnsNothingFromWhatIsSkipped) {
+  ProcessScale policy({}, 1.0);
+  BlockMatrix q = 100.0 * Eigen::MatrixXd::Ones(1, 1);
+  policy.scale(Eigen::MatrixXd::Ones(1, 1), q);
+  policy.skip();
+  const Eigen::MatrixXd s = Eigen::MatrixXd::Ones(1, 1);
+  policy.observe(evidence(s, s, 50.0 * Eigen::VectorXd::Ones(1)));
+  EXPECT_EQ(policy.factor(), 1.0);
+}
+
 // A Kalman filter in the plane and heading whose Q is wrong by a factor; its Q has rank two in each
 // step.
 TEST(ProcessScale, FindsTheFactorOnALinearProblem) {

@@ -1,6 +1,7 @@
 #pragma once
 // Rendered images of a rectified stereo camera -> CObservationStereoImages.
 
+#include <mrpt/img/CImage.h>
 #include <mrpt/img/TCamera.h>
 #include <mrpt/poses/CPose3DQuat.h>
 

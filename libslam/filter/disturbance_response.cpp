@@ -24,6 +24,11 @@ void inflate_all(GaussianState& state, double factor) {
   }
 }
 
+bool has_identities(std::span<const Feature> features) {
+  return std::ranges::any_of(features,
+                             [](const Feature& feature) { return feature.id != kNoIdentity; });
+}
+
 }  // namespace
 
 DisturbanceResponse::DisturbanceResponse(Disturbance policy, const ResponseOptions& options)
@@ -38,8 +43,8 @@ void DisturbanceResponse::lose() {
 }
 
 void DisturbanceResponse::found() {
-  policy_.settle();
   unexplained_ = unpaired_ = 0;
+  vanished_ = false;
 }
 
 void DisturbanceResponse::moved(const Eigen::VectorXd& before, const Eigen::VectorXd& after,
@@ -49,9 +54,8 @@ void DisturbanceResponse::moved(const Eigen::VectorXd& before, const Eigen::Vect
 
 Doubt DisturbanceResponse::answer(const RespondingFilter& filter,
                                   const AssociatedObservation& observation) {
-  const bool identified = std::ranges::any_of(
-      observation.features, [](const Feature& feature) { return feature.id != kNoIdentity; });
-  if (lost() && options_.relocalize && !identified) return stay_lost(filter, observation);
+  if (lost() && options_.relocalize && !has_identities(observation.features))
+    return stay_lost(filter, observation);
   const auto counted = evidence(observation);
   double nis = 0.0;
   if (!counted.empty()) {
@@ -74,12 +78,13 @@ Doubt DisturbanceResponse::answer(const RespondingFilter& filter,
 bool DisturbanceResponse::estranged(const RespondingFilter& filter,
                                     const AssociatedObservation& observation, bool pairs_fit) {
   Initialization where;
-  std::size_t strangers = 0, undecided = 0;
+  std::size_t strangers = 0, undecided = 0, fresh = 0;
   for (std::size_t i = 0; i < observation.features.size(); ++i) {
     const Feature& feature = observation.features[i];
     if (feature.id != kNoIdentity) continue;
     if (observation.verdicts[i].outcome == Outcome::kAmbiguous) ++undecided;
     if (observation.verdicts[i].outcome != Outcome::kNew) continue;
+    ++fresh;
     filter.measurement.initialize(filter.state, filter.pose, feature, where);
     const auto near = [&](const RegisteredLandmark& landmark) {
       return (filter.state.estimate(landmark.block) - where.estimate).norm() <=
@@ -90,7 +95,12 @@ bool DisturbanceResponse::estranged(const RespondingFilter& filter,
   const std::size_t n = observation.features.size(), unpaired = strangers + undecided;
   const bool fits_nothing = !pairs_fit && unpaired > 0 && 2 * unpaired >= n;
   unpaired_ = fits_nothing ? unpaired_ + 1 : 0;
-  return unpaired_ >= kPersistent || (fits_nothing && strangers >= 2 && 2 * strangers >= n);
+  const std::size_t pairs = observation.paired.size();
+  const bool all_changed = pairs == 0 && fresh >= 2 && last_pairs_ >= 2;
+  vanished_ = all_changed || (vanished_ && pairs < 2);
+  last_pairs_ = pairs;
+  return vanished_ || unpaired_ >= kPersistent ||
+         (fits_nothing && strangers >= 2 && 2 * strangers >= n);
 }
 
 std::span<const LinearizedMeasurement> DisturbanceResponse::evidence(
@@ -106,7 +116,17 @@ Doubt DisturbanceResponse::inflate(const RespondingFilter& filter) {
     filter.state.covariance().add_noise(filter.state.offset(filter.pose), policy_.added(scale));
   }
   const AssociatedObservation again = filter.associate();
-  return settle_on(2 * again.paired.size() >= again.identified.size() && !again.paired.empty());
+  if (again.paired.empty()) return settle_on(false);
+  const auto counted = evidence(again);
+  filter.ekf.expect(filter.state, filter.pose, counted, joint_);
+  const bool fits =
+      policy_.possible(Disturbance::squared_distance(joint_), static_cast<int>(joint_.nu.size()));
+  // A pose too far off to be linearized at: with enough landmarks the map shows the right one.
+  if (fits || counted.size() < kEnoughPairs || !options_.relocalize) {
+    settle_on(fits);
+    return Doubt::kDisturbed;
+  }
+  return settle_on(false);
 }
 
 Doubt DisturbanceResponse::search(const RespondingFilter& filter) {
@@ -136,7 +156,9 @@ std::optional<FoundPose> DisturbanceResponse::search_map(const RespondingFilter&
                                                          std::span<const Feature> features) {
   if (!options_.relocalize || !disturbed()) return std::nullopt;
   relocalizer_.observe(filter.state, filter.pose, filter.measurement, features);
-  if (!lost()) return std::nullopt;
+  // Identities leave nothing to guess: no need to wait.
+  const bool sure = unexplained_ > 0 && has_identities(features);
+  if (!lost() && !sure) return std::nullopt;
   auto found_pose = relocalizer_.find(filter.state, filter.registry);
   if (found_pose) found();
   return found_pose;

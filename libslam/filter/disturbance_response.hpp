@@ -92,8 +92,10 @@ class DisturbanceResponse {
   Disturbance policy_;
   ResponseOptions options_;
   Relocalizer relocalizer_;
-  int unexplained_ = 0;  // updates in a row
-  int unpaired_ = 0;     // updates in a row of which half or more fits nothing
+  int unexplained_ = 0;         // updates in a row
+  int unpaired_ = 0;            // updates in a row of which half or more fits nothing
+  std::size_t last_pairs_ = 0;  // of the update before
+  bool vanished_ = false;       // all landmarks in view were gone at once, and others there
   JointInnovation joint_;
 };
 

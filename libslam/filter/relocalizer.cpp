@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <mrpt/math/TPose2D.h>
 #include <mrpt/tfest/TMatchingPair.h>
 #include <mrpt/tfest/se2.h>
@@ -32,14 +32,15 @@ double largest_distance(std::span<const PlanarPoint> points) {
 
 void Relocalizer::restart() {
   sightings_.clear();
+  latest_.clear();
   map_.reset();
 }
 
 void Relocalizer::move(const Eigen::Vector3d& before, const Eigen::Vector3d& after,
                        const Eigen::Matrix3d& cov) {
-  if (sightings_.size() == 0) return;
+  if (sightings_.points().empty()) return;
   Eigen::Matrix3d to_robot = Eigen::Matrix3d::Identity();
-  to_robot.topLeftCorner<2, 2>() = Eigen::Rotation2Dd(-before[2]).toRotationMatrix();
+  to_robot.topLeftCorner<2, 2>() = rotation_of(before).transpose();
   Eigen::Vector3d increment = to_robot * (after - before);
   increment[2] = wrap_angle(increment[2]);
   sightings_.move(increment, to_robot * cov * to_robot.transpose());
@@ -48,62 +49,61 @@ void Relocalizer::move(const Eigen::Vector3d& before, const Eigen::Vector3d& aft
 void Relocalizer::observe(const GaussianState& state, BlockId pose,
                           const MeasurementModel& measurement, std::span<const Feature> features) {
   const Eigen::Vector3d T_world_robot = state.estimate(pose);
-  const Eigen::Matrix2d R_robot_world = Eigen::Rotation2Dd(-T_world_robot[2]).toRotationMatrix();
-  std::vector<SightedPoint> points;
+  const Eigen::Matrix2d R_robot_world = rotation_of(T_world_robot).transpose();
   SensorView view;
   Initialization where;
+  latest_.clear();
+  identities_.clear();
   for (const Feature& feature : features) {
     measurement.initialize(state, pose, feature, where);
     const Eigen::Vector2d place =
         R_robot_world * (Eigen::Vector2d(where.estimate) - T_world_robot.head<2>());
-    points.push_back(
-        {feature.id, {place, R_robot_world * where.cov_noise * R_robot_world.transpose()}});
+    latest_.push_back({place, R_robot_world * where.cov_noise * R_robot_world.transpose()});
+    identities_.push_back(feature.id);
     view.T_robot_sensor = feature.T_robot_sensor;
     const Eigen::Vector2d ray = place - feature.T_robot_sensor.head<2>();
+    const double bearing = std::atan2(ray.y(), ray.x()) - feature.T_robot_sensor[2];
     max_range_ = std::max(max_range_, ray.norm());
-    max_bearing_ =
-        std::max(max_bearing_,
-                 std::abs(wrap_angle(std::atan2(ray.y(), ray.x()) - feature.T_robot_sensor[2])));
+    max_bearing_ = std::max(max_bearing_, std::abs(wrap_angle(bearing)));
   }
   view.max_range = max_range_;
   view.field_of_view = 2.0 * max_bearing_;
-  sightings_.add(points, view);
+  sightings_.add(latest_, view);
 }
 
 std::optional<FoundPose> Relocalizer::find(const GaussianState& state,
                                            const LandmarkRegistry& registry) {
-  bool identified = sightings_.size() > 0;
-  for (std::size_t i = 0; i < sightings_.size(); ++i)
-    identified = identified && sightings_.id(i) != kNoIdentity;
+  const bool identified =
+      std::ranges::any_of(identities_, [](std::int64_t id) { return id != kNoIdentity; });
   return identified ? find_by_identity(state, registry) : find_by_constellation(state, registry);
 }
 
 std::optional<FoundPose> Relocalizer::find_by_identity(const GaussianState& state,
                                                        const LandmarkRegistry& registry) const {
-  const std::vector<PlanarPoint> seen = sightings_.points();
-  std::vector<PlanarPoint> mapped(seen.size());
+  std::vector<PlanarPoint> mapped(latest_.size());
   std::vector<Pairing> pairs;
   std::vector<PointPair> points;
   mrpt::tfest::TMatchingPairList matches;
-  for (std::size_t i = 0; i < seen.size(); ++i) {
-    const auto landmark = registry.find(sightings_.id(i));
-    if (!landmark) continue;
+  for (std::size_t i = 0; i < latest_.size(); ++i) {
+    const auto landmark = registry.find(identities_[i]);
+    if (!landmark || identities_[i] == kNoIdentity) continue;
     const BlockId block = registry.landmarks()[*landmark].block;
     mapped[i] = {state.estimate(block), state.covariance_of(block)};
     pairs.push_back({i, *landmark});
-    points.push_back({&seen[i], &mapped[i]});
+    points.push_back({&latest_[i], &mapped[i]});
+    const Eigen::Vector2f place = mapped[i].position.cast<float>();
+    const Eigen::Vector2f seen = latest_[i].position.cast<float>();
     const auto number = static_cast<std::uint32_t>(i);
-    matches.emplace_back(number, number, static_cast<float>(mapped[i].position.x()),
-                         static_cast<float>(mapped[i].position.y()), 0.0F,
-                         static_cast<float>(seen[i].position.x()),
-                         static_cast<float>(seen[i].position.y()), 0.0F);
+    matches.emplace_back(number, number, place.x(), place.y(), 0.0F, seen.x(), seen.y(), 0.0F);
   }
   mrpt::math::TPose2D start;
   if (pairs.size() < kLeastByIdentity || !mrpt::tfest::se2_l2(matches, start)) return std::nullopt;
   const PoseFit fit = fit_pose(points, {start.x, start.y, start.phi});
   const int dof = 2 * static_cast<int>(pairs.size()) - 3;
   if (!(fit.mahalanobis2 <= chi_square_quantile(kFitProbability, dof))) return std::nullopt;
-  return with_latest(fit.T_world_robot, pairs);
+  FoundPose pose = found(fit.T_world_robot);
+  pose.pairs = std::move(pairs);
+  return pose;
 }
 
 // Relative to its neighbours a landmark is known much better than in the world, where the drift of
@@ -135,28 +135,37 @@ void Relocalizer::index(const GaussianState& state, const LandmarkRegistry& regi
 
 std::optional<FoundPose> Relocalizer::find_by_constellation(const GaussianState& state,
                                                             const LandmarkRegistry& registry) {
-  const std::vector<PlanarPoint> seen = sightings_.points();
+  const std::vector<PlanarPoint>& seen = sightings_.points();
   const double needed = largest_distance(seen);
   if (seen.size() < ConstellationOptions{}.least_pairs || needed <= 0.0) return std::nullopt;
   if (!map_ || needed > reach_) index(state, registry, kReserve * needed);
   const ConstellationMatch match = match_constellation(*map_, seen, sightings_.views());
   if (match.verdict != ConstellationVerdict::kFound) return std::nullopt;
-  std::vector<Pairing> pairs = match.pairs;
-  for (Pairing& pair : pairs) pair.landmark = landmarks_[pair.landmark];
-  return with_latest(match.T_world_robot, pairs);
+  FoundPose pose = found(match.T_world_robot);
+  for (const Pairing& pair : match.pairs)
+    if (const auto feature = latest_of(seen[pair.feature]))
+      pose.pairs.push_back({*feature, landmarks_[pair.landmark]});
+  if (pose.pairs.size() < kLeastLatest) return std::nullopt;
+  return pose;
 }
 
-std::optional<FoundPose> Relocalizer::with_latest(const Eigen::Vector3d& pose,
-                                                  std::span<const Pairing> pairs) const {
+std::optional<std::size_t> Relocalizer::latest_of(const PlanarPoint& sighting) const {
+  static const double kGate = chi_square_quantile(kFitProbability, 2);
+  std::optional<std::size_t> best;
+  for (std::size_t i = 0; i < latest_.size(); ++i) {
+    const Eigen::Vector2d e = latest_[i].position - sighting.position;
+    if (e.dot((latest_[i].cov + sighting.cov).inverse() * e) > kGate) continue;
+    if (best) return std::nullopt;
+    best = i;
+  }
+  return best;
+}
+
+FoundPose Relocalizer::found(const Eigen::Vector3d& pose) const {
+  const double sigma = kUninformedRanges * max_range_;
   FoundPose found;
   found.T_world_robot = pose;
-  const double sigma = kUninformedRanges * max_range_;
   found.cov_uninformed = Eigen::Vector3d(sigma, sigma, kUninformedHeading).cwiseAbs2().asDiagonal();
-  const std::vector<std::size_t>& latest = sightings_.latest();
-  for (std::size_t feature = 0; feature < latest.size(); ++feature)
-    for (const Pairing& pair : pairs)
-      if (pair.feature == latest[feature]) found.pairs.push_back({feature, pair.landmark});
-  if (found.pairs.size() < kLeastLatest) return std::nullopt;
   return found;
 }
 

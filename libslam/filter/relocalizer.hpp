@@ -1,6 +1,6 @@
 #pragma once
 // Finds a lost robot in its own map: by the constellation of what it has seen recently, or by the
-// identities of that.
+// identities of what it sees now.
 //
 // The pose that is found is a function of the map and of the current observation. To get the
 // covariance and all cross terms right, the filter forgets its pose: the block is put at the
@@ -8,6 +8,7 @@
 // correction with the pairs of the observation, linearized there, does the rest. Planar poses and
 // points.
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
@@ -18,7 +19,7 @@
 #include <libslam/association/associator.hpp>
 #include <libslam/association/constellation.hpp>
 #include <libslam/association/landmark_registry.hpp>
-#include <libslam/filter/recent_sightings.hpp>
+#include <libslam/association/recent_sightings.hpp>
 #include <libslam/measurement/measurement_model.hpp>
 #include <libslam/state/gaussian_state.hpp>
 
@@ -34,9 +35,7 @@ struct FoundPose {
 class Relocalizer {
  public:
   /// Observations that are remembered.
-  static constexpr int kMemory = 50;
-
-  Relocalizer() : sightings_(kMemory) {}
+  static constexpr std::size_t kMemory = 50;
 
   /// Forgets what was seen before something moved the robot.
   void restart();
@@ -56,11 +55,13 @@ class Relocalizer {
   std::optional<FoundPose> find_by_constellation(const GaussianState& state,
                                                  const LandmarkRegistry& registry);
   void index(const GaussianState& state, const LandmarkRegistry& registry, double reach);
-  /// The pairs that belong to the last observation; nothing if they are too few.
-  std::optional<FoundPose> with_latest(const Eigen::Vector3d& pose,
-                                       std::span<const Pairing> pairs) const;
+  /// The feature of the last observation that is this sighting; nothing if none or several may be.
+  std::optional<std::size_t> latest_of(const PlanarPoint& sighting) const;
+  FoundPose found(const Eigen::Vector3d& pose) const;
 
-  RecentSightings sightings_;
+  RecentSightings sightings_{kMemory};
+  std::vector<PlanarPoint> latest_;             // the last observation, robot frame
+  std::vector<std::int64_t> identities_;        // of its features
   double max_range_ = 0.0, max_bearing_ = 0.0;  // of all that was seen, sensor frame
   std::unique_ptr<ConstellationIndex> map_;
   double reach_ = 0.0;                  // of the distances in map_

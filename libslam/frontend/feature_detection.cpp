@@ -97,7 +97,7 @@ double FeatureDetector::scale_of(const cv::KeyPoint& point) const {
 
 std::vector<std::shared_ptr<const Descriptor>> describe_corners(
     const cv::Mat& image, const std::vector<cv::Point2f>& corners) {
-  const auto orb = cv::ORB::create(static_cast<int>(corners.size()) + 1, 1.2F, 1);
+  const auto orb = cv::ORB::create(static_cast<int>(corners.size()) + 1, 1.2F, 1, 1);
   std::vector<cv::KeyPoint> points;
   for (std::size_t i = 0; i < corners.size(); ++i)
     points.emplace_back(corners[i], 31.0F, 0.0F, 0.0F, 0, static_cast<int>(i));

@@ -36,7 +36,7 @@ class FeatureDetector {
   double finest_size_;   ///< [px]
 };
 
-/// Descriptors of corners without a scale or a direction (upright ORB); a point too near the border
+/// Descriptors of corners without a scale or a direction (upright ORB); a point at the very border
 /// has none.
 std::vector<std::shared_ptr<const Descriptor>> describe_corners(
     const cv::Mat& image, const std::vector<cv::Point2f>& corners);

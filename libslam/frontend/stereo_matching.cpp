@@ -18,9 +18,9 @@ constexpr int kWindow = 13;
 constexpr float kReturn = 0.5F;
 /// Half of the patch of a row search [px].
 constexpr int kHalfPatch = 5;
-constexpr double kLeastCorrelation = 0.8;
+constexpr double kLeastCorrelation = 0.85;
 /// A second peak of this share of the first makes a row ambiguous.
-constexpr double kSecondPeak = 0.97;
+constexpr double kSecondPeak = 0.95;
 
 /// Right points by the image row they lie in.
 std::vector<std::vector<int>> rows_of(const DetectedPoints& points, int rows) {
@@ -42,8 +42,12 @@ cv::Rect patch_about(const cv::Point2f& p) {
   return {x - kHalfPatch, y - kHalfPatch, 2 * kHalfPatch + 1, 2 * kHalfPatch + 1};
 }
 
-/// Place of the best correlation along the strip, or nothing.
-std::optional<int> clear_peak(const cv::Mat& scores) {
+/// Column from `first` to `last` where the patch is found in the rows from `row` on, or nothing.
+std::optional<int> find_along_row(const cv::Mat& patch, const cv::Mat& image, int row, int first,
+                                  int last) {
+  const cv::Rect strip(first, row, last - first + patch.cols, patch.rows);
+  cv::Mat scores;
+  cv::matchTemplate(image(strip), patch, scores, cv::TM_CCOEFF_NORMED);
   cv::Point peak;
   double best = 0.0;
   cv::minMaxLoc(scores, nullptr, &best, nullptr, &peak);
@@ -51,7 +55,7 @@ std::optional<int> clear_peak(const cv::Mat& scores) {
   for (int x = 0; x < scores.cols; ++x)
     if (std::abs(x - peak.x) > 2 && scores.at<float>(0, x) > kSecondPeak * best)
       return std::nullopt;
-  return peak.x;
+  return first + peak.x;
 }
 
 }  // namespace
@@ -100,17 +104,18 @@ std::vector<std::optional<cv::Point2f>> search_rows(const StereoFrontendParamete
                                                     const std::vector<cv::Point2f>& corners) {
   std::vector<std::optional<cv::Point2f>> partners(corners.size());
   const cv::Rect image({0, 0}, left.size());
-  cv::Mat scores;
+  const int most = static_cast<int>(parameters.max_disparity);
   for (std::size_t i = 0; i < corners.size(); ++i) {
     const cv::Rect patch = patch_about(corners[i]);
     if ((patch & image) != patch) continue;
-    const int reach = std::min(patch.x, static_cast<int>(parameters.max_disparity));
-    const cv::Rect strip(patch.x - reach, patch.y, patch.width + reach, patch.height);
-    cv::matchTemplate(right(strip), left(patch), scores, cv::TM_CCOEFF_NORMED);
-    const auto peak = clear_peak(scores);
-    if (!peak) continue;
-    const float disparity = static_cast<float>(reach - *peak);
-    partners[i] = cv::Point2f(corners[i].x - disparity, corners[i].y);
+    const int nearest = std::max(0, patch.x - most);
+    const auto there = find_along_row(left(patch), right, patch.y, nearest, patch.x);
+    if (!there) continue;
+    const cv::Rect partner(*there, patch.y, patch.width, patch.height);
+    const int farthest = std::min(image.width - patch.width, *there + most);
+    const auto back = find_along_row(right(partner), left, patch.y, *there, farthest);
+    if (!back || std::abs(*back - patch.x) > 1) continue;
+    partners[i] = cv::Point2f(corners[i].x - static_cast<float>(patch.x - *there), corners[i].y);
   }
   return partners;
 }

@@ -21,7 +21,7 @@ std::vector<std::pair<int, int>> match_rows(const StereoFrontendParameters& para
                                             const DetectedPoints& right);
 
 /// Right partners of corners that have no descriptor: the best normalized correlation of their
-/// surroundings along the row, clearly better than any other; whole pixels.
+/// surroundings along the row, clearly better than any other, and the same way back; whole pixels.
 std::vector<std::optional<cv::Point2f>> search_rows(const StereoFrontendParameters& parameters,
                                                     const cv::Mat& left, const cv::Mat& right,
                                                     const std::vector<cv::Point2f>& corners);

@@ -19,6 +19,7 @@ using Vector6 = Eigen::Matrix<double, 6, 1>;
 constexpr int kTriples = 128;
 constexpr int kIterations = 8;
 constexpr int kRounds = 4;
+constexpr int kPolishing = 4;
 constexpr double kConverged = 1e-9;
 constexpr double kNearest = 1e-3;  ///< depth [m]
 
@@ -69,9 +70,10 @@ int count_support(const StereoCamera& camera, std::span<const PointPair> pairs,
 
 /// Moves T to the minimum over the pairs that agree; returns the covariance of the motion.
 Matrix6 minimize(const StereoCamera& camera, std::span<const PointPair> pairs,
-                 const std::vector<bool>& agrees, Eigen::Isometry3d& T) {
+                 const std::vector<bool>& agrees, Eigen::Isometry3d& T,
+                 int iterations = kIterations) {
   Matrix6 H;
-  for (int iteration = 0; iteration < kIterations; ++iteration) {
+  for (int iteration = 0; iteration < iterations; ++iteration) {
     H.setZero();
     Vector6 g = Vector6::Zero();
     Residual r;
@@ -94,16 +96,21 @@ Matrix6 minimize(const StereoCamera& camera, std::span<const PointPair> pairs,
   return H.inverse();
 }
 
+/// Absolute orientation of a triple, then a few steps to what its pixels say: depths are far
+/// noisier than directions.
 Eigen::Isometry3d orient(const StereoCamera& camera, std::span<const PointPair> pairs,
                          const std::array<std::size_t, 3>& triple) {
   Eigen::Matrix3d before, after;
+  std::array<PointPair, 3> chosen;
   for (int k = 0; k < 3; ++k) {
-    const PointPair& pair = pairs[triple[static_cast<std::size_t>(k)]];
+    const PointPair& pair = chosen[static_cast<std::size_t>(k)] =
+        pairs[triple[static_cast<std::size_t>(k)]];
     before.col(k) = pair.p_before;
     after.col(k) = triangulate(camera, pair.z_after);
   }
   Eigen::Isometry3d T;
   T.matrix() = Eigen::umeyama(before, after, false);
+  minimize(camera, chosen, {true, true, true}, T, kPolishing);
   return T;
 }
 

@@ -13,10 +13,6 @@ using Observation = mrpt::obs::CObservationStereoImagesFeatures;
 /// What calibration files round away: relative for lengths, radians for the rotation.
 constexpr double kRounding = 1e-4;
 
-double square_or(double sigma, double otherwise) {
-  return sigma > 0.0 ? sigma * sigma : otherwise * otherwise;
-}
-
 bool undistorted(const mrpt::img::TCamera& camera) {
   return std::ranges::all_of(camera.dist, [](double k) { return k == 0.0; });
 }
@@ -71,10 +67,10 @@ StereoObservation::StereoObservation(const FrontendParameters& frontend,
       max_range_(frontend.max_range),
       with_identities_(with_identities),
       sensor_label_(std::move(sensor_label)) {
-  const double u_left = square_or(noise.sigma_u_left, noise.sigma_pixel);
-  const double u_right = square_or(noise.sigma_u_right, noise.sigma_pixel);
-  const double v_left = square_or(noise.sigma_v_left, noise.sigma_pixel);
-  const double v_right = square_or(noise.sigma_v_right, noise.sigma_pixel);
+  const double u_left = noise.variance(noise.sigma_u_left);
+  const double u_right = noise.variance(noise.sigma_u_right);
+  const double v_left = noise.variance(noise.sigma_v_left);
+  const double v_right = noise.variance(noise.sigma_v_right);
   weight_left_ = v_right / (v_left + v_right);
   cov_ = Eigen::Matrix3d{{u_left, 0.0, u_left},
                          {0.0, v_left * v_right / (v_left + v_right), 0.0},

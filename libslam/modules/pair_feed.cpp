@@ -1,4 +1,5 @@
 #include <memory>
+#include <string>
 #include <utility>
 
 #include <libslam/modules/pair_feed.hpp>
@@ -69,9 +70,17 @@ LogStep PairFeed::assemble(const mrpt::obs::CActionCollection::Ptr& action,
   return step;
 }
 
-std::span<const std::string> PairFeed::take_warnings() {
-  const std::span<const std::string> all = intake_.summary().warnings;
-  return all.subspan(std::exchange(warnings_taken_, all.size()));
+void PairFeed::report(mrpt::system::COutputLogger& logger) {
+  using namespace mrpt::system;  // the names of the levels
+  const std::string pair = "pair " + std::to_string(steps_);
+  logger.logStr(LVL_DEBUG, pair + ": " + std::to_string(last_.accepted) + " sightings, " +
+                               std::to_string(last_.new_landmarks) + " new landmarks, " +
+                               std::to_string(last_.gated + last_.ambiguous) + " not used");
+  if (!last_.event.empty()) logger.logStr(LVL_WARN, pair + ": " + last_.event);
+  const auto& warnings = intake_.summary().warnings;
+  while (warnings_logged_ < warnings.size()) logger.logStr(LVL_WARN, warnings[warnings_logged_++]);
+  if (std::exchange(healthy_, filter().healthy()) && !healthy_)
+    logger.logStr(LVL_ERROR, "the filter diverged at " + pair);
 }
 
 }  // namespace libslam

@@ -2,8 +2,9 @@
 // The pairs that an MRPT program hands to a module, on their way through a pipeline; not for users.
 
 #include <cstdint>
-#include <span>
 #include <string>
+
+#include <mrpt/system/COutputLogger.h>
 
 #include <libslam/data/step_record.hpp>
 #include <libslam/io/intake.hpp>
@@ -44,8 +45,9 @@ class PairFeed {
   ModuleState state() const { return {filter().saved_map(), steps_, assembler_.clock()}; }
   /// Localization from now on, or SLAM: EkfSlam::give_landmarks.
   void give_landmarks(bool given) { pipeline_.give_landmarks(given); }
-  /// Findings about the input since the last call.
-  std::span<const std::string> take_warnings();
+  /// Tells `logger` what became of the last step (debug), what happened to the filter, and new
+  /// findings about the input (warnings).
+  void report(mrpt::system::COutputLogger& logger);
 
  private:
   /// The pair with a time that can be trusted; both null: an empty step.
@@ -58,7 +60,8 @@ class PairFeed {
   LogStep step_;  // the last one
   StepRecord last_;
   std::int64_t steps_ = 0;
-  std::size_t warnings_taken_ = 0;
+  std::size_t warnings_logged_ = 0;
+  bool healthy_ = true;
 };
 
 }  // namespace libslam

@@ -1,5 +1,4 @@
 #include <limits>
-#include <utility>
 
 #include <Eigen/Dense>  // before any use of asEigen()
 #include <mrpt/bayes/CKalmanFilterCapable.h>
@@ -74,13 +73,7 @@ void RangeBearingSlam2D::report_step() {
   }
   association_.results.distance = outcome.nis;
   if (options.create_simplemap) impl.path.emplace_back(impl.pose().head<2>());
-
-  MRPT_LOG_DEBUG_STREAM("pair " << impl.feed.steps() << ": " << outcome.accepted << " sightings, "
-                                << outcome.new_landmarks << " new landmarks, "
-                                << outcome.gated + outcome.ambiguous << " not used");
-  for (const std::string& warning : impl.feed.take_warnings()) MRPT_LOG_WARN(warning);
-  if (std::exchange(impl.healthy, impl.filter().healthy()) && !impl.healthy)
-    MRPT_LOG_ERROR_STREAM("the filter diverged at pair " << impl.feed.steps());
+  impl.feed.report(*this);
 }
 
 void RangeBearingSlam2D::warn_about_options() const {
@@ -133,6 +126,14 @@ void RangeBearingSlam2D::saveState(mrpt::serialization::CArchive& out) const {
 void RangeBearingSlam2D::loadState(mrpt::serialization::CArchive& in) {
   impl_ = std::make_unique<Impl>(options.getEffectiveParameters(), read_state(in));
   association_ = {};
+}
+
+std::vector<AdaptedNoise> RangeBearingSlam2D::getCurrentNoise() const {
+  return impl_->feed.last().noise;
+}
+
+std::string RangeBearingSlam2D::getLastEvent() const {
+  return impl_->feed.last().event;
 }
 
 std::vector<CalibrationValue> RangeBearingSlam2D::getCurrentCalibration() const {

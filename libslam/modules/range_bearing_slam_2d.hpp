@@ -5,8 +5,10 @@
 //
 // By default the result is that of MRPT's class with method kfEKFNaive (tests/oracle: to 1e-8 at
 // every step). `options.parameters` adds what MRPT's class does not have: odometry calibration on
-// line, other motion models, the right-invariant error frame, per-observation noise, a dead zone
-// between sightings and new landmarks. Where both differ:
+// line ([calibration] in an ini file), adapted noise ([adaptation]), the answer to slip and kidnap
+// ([disturbance]), other motion models, the right-invariant error frame, per-observation noise, a
+// dead zone between sightings and new landmarks. config/mrpt_adaptive.ini is an example. Where both
+// differ:
 // - Motion before the first landmark counts; MRPT discards it. Only a pair without odometry adds no
 //   noise then, since the world is where the robot stands.
 // - Every CObservationBearingRange of a frame is used; MRPT takes the first. A frame without one is
@@ -47,6 +49,7 @@ class CArchive;
 
 namespace libslam {
 
+struct AdaptedNoise;      // libslam/data/step_record.hpp
 struct CalibrationValue;  // libslam/data/step_record.hpp
 
 class RangeBearingSlam2D : public mrpt::system::COutputLogger {
@@ -79,6 +82,12 @@ class RangeBearingSlam2D : public mrpt::system::COutputLogger {
   void getCurrentRobotPose(mrpt::poses::CPosePDFGaussian& out_robotPose) const;
   /// The calibration parameters that `options.parameters.calibration` enables.
   std::vector<CalibrationValue> getCurrentCalibration() const;
+  /// The noise that `options.parameters.policies.noise_adaptation` believes in; empty where it is
+  /// off.
+  std::vector<AdaptedNoise> getCurrentNoise() const;
+  /// What `options.parameters.policies.disturbance` noticed in the last pair: "disturbance",
+  /// "lost", "relocalized" or nothing.
+  std::string getLastEvent() const;
 
   /// Everything that the next pair depends on: what runs on after loadState(), with the same
   /// options, gives the results of a run without a break. What policies learned and the phase of an
@@ -107,9 +116,10 @@ class RangeBearingSlam2D : public mrpt::system::COutputLogger {
 
     /// MRPT's keys from `section`, also the older stdXY_no_odo, stdPhi_no_odo_deg and
     /// force_ignore_odometry; `parameters` from sections named after those of config/README.md:
-    /// [libslam.filter] error_frame = right_invariant, [libslam.calibration.scale_left] enabled =
-    /// true. Throws ConfigError naming section and key on a key of [libslam.*] that is unknown, has
-    /// a bad value, or belongs to one of MRPT's options.
+    /// [libslam.filter] error_frame = right_invariant, and by the short names [calibration],
+    /// [adaptation] and [disturbance] (config/ini_parameters.hpp). Throws ConfigError naming
+    /// section and key on a key of [libslam.*] that is unknown, has a bad value, or belongs to one
+    /// of MRPT's options.
     void loadFromConfigFile(const mrpt::config::CConfigFileBase& source,
                             const std::string& section) override;
     void dumpToTextStream(std::ostream& out) const override;

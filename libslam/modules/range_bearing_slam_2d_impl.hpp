@@ -23,7 +23,6 @@ struct RangeBearingSlam2D::Impl {
 
   PairFeed feed;
   std::vector<Eigen::Vector2d> path;  ///< of options.create_simplemap
-  bool healthy = true;
 };
 
 }  // namespace libslam

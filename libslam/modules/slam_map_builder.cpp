@@ -84,7 +84,7 @@ void SlamMapBuilder::process(const mrpt::obs::CActionCollection::Ptr& action,
   }
   impl_->landmarks_shown = false;
   if (is_key_frame(*frame)) impl_->maps.insert(to_pose_pdf(impl_->feed.last()), frame);
-  report_step();
+  impl_->feed.report(*this);
 }
 
 bool SlamMapBuilder::is_key_frame(const mrpt::obs::CSensoryFrame& frame) const {
@@ -96,16 +96,6 @@ bool SlamMapBuilder::is_key_frame(const mrpt::obs::CSensoryFrame& frame) const {
     return true;
   return impl_->maps.is_due(to_pose_pdf(impl_->feed.last()).mean,
                             {slam_options.insertionLinDistance, slam_options.insertionAngDistance});
-}
-
-void SlamMapBuilder::report_step() {
-  const StepRecord& record = impl_->feed.last();
-  MRPT_LOG_DEBUG_STREAM("step " << record.index << ": " << record.accepted << " sightings, "
-                                << record.new_landmarks << " new landmarks, "
-                                << record.gated + record.ambiguous << " not used");
-  for (const std::string& warning : impl_->feed.take_warnings()) MRPT_LOG_WARN(warning);
-  if (std::exchange(impl_->healthy, impl_->feed.filter().healthy()) && !impl_->healthy)
-    MRPT_LOG_ERROR_STREAM("the filter diverged at step " << record.index);
 }
 
 mrpt::poses::CPose3DPDF::Ptr SlamMapBuilder::getCurrentPoseEstimation() const {
@@ -153,6 +143,16 @@ const mrpt::maps::CMultiMetricMap* SlamMapBuilder::getCurrentlyBuiltMetricMap() 
   if (!std::exchange(impl_->landmarks_shown, true))
     impl_->maps.show(impl_->feed.filter().landmarks());
   return &impl_->maps.metric_map();
+}
+
+std::vector<AdaptedNoise> SlamMapBuilder::getCurrentNoise() const {
+  const std::lock_guard lock(critical_);
+  return impl_->feed.last().noise;
+}
+
+std::string SlamMapBuilder::getLastEvent() const {
+  const std::lock_guard lock(critical_);
+  return impl_->feed.last().event;
 }
 
 std::vector<CalibrationValue> SlamMapBuilder::getCurrentCalibration() const {

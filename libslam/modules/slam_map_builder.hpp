@@ -17,6 +17,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include <mrpt/config/CLoadableOptions.h>
 #include <mrpt/maps/TMetricMapInitializer.h>
@@ -30,6 +31,7 @@ class CArchive;
 
 namespace libslam {
 
+struct AdaptedNoise;      // libslam/data/step_record.hpp
 struct CalibrationValue;  // libslam/data/step_record.hpp
 
 class SlamMapBuilder final : public mrpt::slam::CMetricMapBuilder {
@@ -100,6 +102,10 @@ class SlamMapBuilder final : public mrpt::slam::CMetricMapBuilder {
 
   /// The calibration parameters that `slam_options.parameters.calibration` enables.
   std::vector<CalibrationValue> getCurrentCalibration() const;
+  /// The noise that [adaptation] believes in; empty where it is off.
+  std::vector<AdaptedNoise> getCurrentNoise() const;
+  /// What [disturbance] noticed in the last pair: "disturbance", "lost", "relocalized" or nothing.
+  std::string getLastEvent() const;
 
  private:
   struct Impl;
@@ -110,7 +116,6 @@ class SlamMapBuilder final : public mrpt::slam::CMetricMapBuilder {
                const mrpt::obs::CSensoryFrame::Ptr& frame);
   bool is_key_frame(const mrpt::obs::CSensoryFrame& frame) const;
   void hold_map_on_demand();
-  void report_step();
 
   std::mutex& critical_ = critZoneChangingMap;  // the same for const methods
   std::unique_ptr<Impl> impl_;

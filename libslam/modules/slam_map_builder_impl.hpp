@@ -21,7 +21,6 @@ struct SlamMapBuilder::Impl {
   bool landmarks_shown = true;  ///< `maps` shows them as they are now
   bool fresh = false;           ///< never initialized: options may still change
   bool map_given = false;       ///< the filter localizes
-  bool healthy = true;
 };
 
 }  // namespace libslam

@@ -116,7 +116,7 @@ void StereoLocalization::process_ready() {
     LogStep step = std::move(impl.splitter.ready().front());
     impl.splitter.ready().pop_front();
     impl.feed.process(std::move(step));
-    report_step();
+    impl.feed.report(*this);
   }
 }
 
@@ -135,18 +135,7 @@ void StereoLocalization::process(const CActionCollection::Ptr& action,
     MRPT_LOG_WARN(unusable.what());
     impl.feed.process_without_odometry();
   }
-  report_step();
-}
-
-void StereoLocalization::report_step() {
-  Impl& impl = running();
-  const StepRecord& record = impl.feed.last();
-  MRPT_LOG_DEBUG_STREAM("step " << record.index << ": " << record.accepted << " points, "
-                                << record.new_landmarks << " new landmarks, "
-                                << record.gated + record.ambiguous << " not used");
-  for (const std::string& warning : impl.feed.take_warnings()) MRPT_LOG_WARN(warning);
-  if (std::exchange(impl.healthy, impl.feed.filter().healthy()) && !impl.healthy)
-    MRPT_LOG_ERROR_STREAM("the filter diverged at step " << record.index);
+  impl.feed.report(*this);
 }
 
 void StereoLocalization::getCurrentPose(mrpt::poses::CPose3DPDFGaussian& out_pose) const {

@@ -87,7 +87,8 @@ class StereoLocalization : public mrpt::system::COutputLogger {
   /// T_world_robot. Near a pitch of +-90 degrees the angles of the first form are singular.
   void getCurrentPose(mrpt::poses::CPose3DPDFGaussian& out_pose) const;
   void getCurrentPose(mrpt::poses::CPose3DQuatPDFGaussian& out_pose) const;
-  /// How many points the last observation gave and what became of them, the calibration ...
+  /// What became of the points of the last observation, the calibration, the adapted noise, and
+  /// what [disturbance] noticed.
   const StepRecord& getLastStep() const;
   /// Landmarks of the map.
   std::vector<LandmarkEstimate> getLandmarks() const;
@@ -107,7 +108,6 @@ class StereoLocalization : public mrpt::system::COutputLogger {
   void process(const std::shared_ptr<mrpt::obs::CActionCollection>& action,
                const std::shared_ptr<mrpt::obs::CSensoryFrame>& frame);
   void process_ready();
-  void report_step();
 
   std::unique_ptr<Impl> impl_;
 };

@@ -22,7 +22,6 @@ struct StereoLocalization::Impl {
   std::string odometry;          ///< input.odometry: what drives the motion
   VehicleTwist twist;            ///< where velocities do
   ObservationSplitter splitter;  ///< where poses of odometry do
-  bool healthy = true;
 };
 
 }  // namespace libslam

@@ -22,13 +22,14 @@ std::vector<NoiseComponent> noise_components(const Parameters& p) {
          n.max_sigma_bearing_deg * kDegree, n.bearing_growth_per_m}};
   if (p.measurement.model == "stereo_point") {
     const StereoNoiseParameters& s = p.measurement.stereo;
-    const auto pixel = [&](const char* name, double configured) {
-      return NoiseComponent{name, configured, n.min_sigma_pixel, n.max_sigma_pixel,
+    const double u_left = s.variance(s.sigma_u_left), u_right = s.variance(s.sigma_u_right);
+    const double v_left = s.variance(s.sigma_v_left), v_right = s.variance(s.sigma_v_right);
+    const auto component = [&](const char* name, double variance) {
+      return NoiseComponent{name, std::sqrt(variance), n.min_sigma_pixel, n.max_sigma_pixel,
                             n.pixel_growth_per_m};
     };
-    const auto sigma = [&](double own) { return own > 0.0 ? own : s.sigma_pixel; };
-    return {pixel("u", sigma(s.sigma_u_left)), pixel("v", sigma(s.sigma_v_left)),
-            pixel("disparity", std::hypot(sigma(s.sigma_u_left), sigma(s.sigma_u_right)))};
+    return {component("u", u_left), component("v", v_left * v_right / (v_left + v_right)),
+            component("d", u_left + u_right)};
   }
   throw std::invalid_argument("no noise adaptation for measurement model '" + p.measurement.model +
                               "'");

@@ -30,8 +30,8 @@ Disturbance::Disturbance(DisturbanceOptions options) : options_(std::move(option
     throw std::invalid_argument("the displacement of a disturbance needs positive sigmas");
 }
 
-bool Disturbance::beyond_trigger(double nis, int dof) const {
-  return !within(nis, dof, options_.trigger_probability);
+bool Disturbance::possible(double nis, int dof) const {
+  return within(nis, dof, options_.trigger_probability);
 }
 
 bool Disturbance::quiet(double nis, int dof) const {
@@ -46,7 +46,7 @@ bool Disturbance::judge(double nis, int dof, bool estranged) {
     all.nis += one.nis;
     all.dof += one.dof;
   }
-  const bool triggered = estranged || beyond_trigger(nis, dof) || beyond_trigger(all.nis, all.dof);
+  const bool triggered = estranged || !possible(nis, dof) || !possible(all.nis, all.dof);
   began_ = triggered && !lasts_;
   lasts_ = lasts_ || triggered;
   if (!lasts_) return false;

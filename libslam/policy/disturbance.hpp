@@ -53,6 +53,8 @@ class Disturbance {
   /// Judges an observation before its correction: its d^2 with `dof` degrees of freedom (0: it says
   /// nothing), and whether it is estranged: unlike the map although near it. True: inflate now.
   bool judge(double nis, int dof, bool estranged);
+  /// Below the trigger level.
+  bool possible(double nis, int dof) const;
   /// Below the release level.
   bool quiet(double nis, int dof) const;
   /// True from the trigger to the release.
@@ -77,7 +79,6 @@ class Disturbance {
     double nis = 0.0;
     int dof = 0;
   };
-  bool beyond_trigger(double nis, int dof) const;
 
   DisturbanceOptions options_;
   std::deque<Sum> recent_;

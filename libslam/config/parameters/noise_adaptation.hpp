@@ -17,7 +17,7 @@ struct NoiseAdaptationParameters {
   double eigenvalue_floor = 0.01;
   double min_sigma_range = 1e-3, max_sigma_range = 100.0, range_growth_per_m = 0.0;
   double min_sigma_bearing_deg = 0.01, max_sigma_bearing_deg = 60.0, bearing_growth_per_m = 0.0;
-  double min_sigma_pixel = 0.01, max_sigma_pixel = 100.0, pixel_growth_per_m = 0.0;
+  double min_sigma_pixel = 0.05, max_sigma_pixel = 200.0, pixel_growth_per_m = 0.0;
 
   void describe(auto& v) {
     v.value("method", method,
@@ -61,9 +61,9 @@ struct NoiseAdaptationParameters {
         {"1/m",
          "Known shape: sigma of a bearing is multiplied by 1 + bearing_growth_per_m * range.", 0});
     v.value("min_sigma_pixel", min_sigma_pixel,
-            {"px", "Floor of sigma of columns, rows and disparities.", 1e-9});
+            {"px", "Floor of the sigmas of column, row and disparity of a stereo point.", 1e-6});
     v.value("max_sigma_pixel", max_sigma_pixel,
-            {"px", "Ceiling of sigma of columns, rows and disparities.", 1e-9});
+            {"px", "Ceiling of the sigmas of column, row and disparity of a stereo point.", 1e-6});
     v.value(
         "pixel_growth_per_m", pixel_growth_per_m,
         {"1/m", "Known shape: sigma in the images is multiplied by 1 + pixel_growth_per_m * depth.",

@@ -11,6 +11,11 @@ struct StereoNoiseParameters {
   double sigma_u_left = 0.0, sigma_v_left = 0.0, sigma_u_right = 0.0, sigma_v_right = 0.0;
   int landmark_dimension = 3;
 
+  /// Variance of a coordinate [px^2], `sigma` one of the above.
+  double variance(double sigma) const {
+    return sigma > 0.0 ? sigma * sigma : sigma_pixel * sigma_pixel;
+  }
+
   void describe(auto& v) {
     v.value("sigma_pixel", sigma_pixel,
             {"px", "Standard deviation of each pixel coordinate of a stereo point.", 1e-6, 1e6});

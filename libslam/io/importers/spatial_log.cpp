@@ -49,7 +49,9 @@ class SpatialLogWriter {
   void write_action(const SpatialStep& step, double dt) {
     mrpt::obs::CActionRobotMovement3D motion;
     motion.timestamp = mrpt::Clock::fromDouble(step.time);
-    motion.estimationMethod = mrpt::obs::CActionRobotMovement3D::emOdometry;
+    // MRPT recomputes poseChange from its own motion model, by sampling, when it reads an action of
+    // method odometry.
+    motion.estimationMethod = mrpt::obs::CActionRobotMovement3D::emVisualOdometry;
     motion.hasVelocities.assign(6, true);
     const auto v = step.twist.cast<float>().eval();
     for (const int i : {0, 1, 2}) {

@@ -14,6 +14,7 @@
 #include <mrpt/maps/CBeaconMap.h>
 #include <mrpt/maps/COccupancyGridMap2D.h>
 #include <mrpt/maps/CSimplePointsMap.h>
+#include <mrpt/obs/CActionRobotMovement3D.h>
 #include <mrpt/obs/CObservationBearingRange.h>
 #include <mrpt/opengl/CSetOfObjects.h>
 #include <mrpt/slam/CMetricMapBuilderICP.h>

@@ -1,5 +1,6 @@
 // body_twist and constant_twist: exactness, Jacobians by regime, noise.
 
+#include <cmath>
 #include <random>
 #include <support/numeric_jacobian.hpp>
 #include <unsupported/Eigen/MatrixFunctions>

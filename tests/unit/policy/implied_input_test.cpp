@@ -42,7 +42,7 @@ TEST(ImpliedInput, NoiseAccumulatesThroughTheMotionUntilTheRestart) {
 }
 
 // A tracker that froze on a robot with well known odometry and a map as uncertain as its pose.
-TEST(ImpliedInput, SeesWhatTheJointTestDoesNot) {
+TEST(ImpliedInput, FindsATrackerThatFroze) {
   ImpliedInput policy(0.999);
   policy.move(BlockMatrix::Identity(1, 1), BlockMatrix::Constant(1, 1, 0.01));
   // S is the noise of the motion and of the pixels: pose and map are uncertain together.

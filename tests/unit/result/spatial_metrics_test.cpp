@@ -79,7 +79,8 @@ TEST(SpatialPathErrors, NeitherRawNorAlignedDependOnTheFrameOfTheTruth) {
 }
 
 TEST(SpatialRelativeErrors, ScaleErrorIsSeenAsPercentAndTurnAsDegreesPerMetre) {
-  const Vector3d along = Vector3d(2, -1, 2) / 3, axis = Vector3d(1, 2, 2) / 3;
+  // Steps of exactly 3 m.
+  const Vector3d along(2, -1, 2), axis = Vector3d(1, 2, 2) / 3;
   Trajectory truth;
   std::vector<SpatialEstimate> longer(101), turning(101);
   std::vector<PoseMatch> matches;
@@ -87,15 +88,15 @@ TEST(SpatialRelativeErrors, ScaleErrorIsSeenAsPercentAndTurnAsDegreesPerMetre) {
     const auto s = static_cast<double>(i);
     truth.spatial.push_back({s * along, Eigen::Quaterniond::Identity()});
     longer[i].pose.position = 1.02 * s * along;
-    turning[i].pose = {s * along, sample::rotation(1e-3 * s * axis)};
+    turning[i].pose = {s * along, sample::rotation(3e-3 * s * axis)};
     matches.push_back({i, i});
   }
-  const auto scaled = compare_relative(longer, truth, matches);
-  ASSERT_TRUE(scaled);
-  EXPECT_EQ(scaled->distance_m, 10.0);
+  EXPECT_EQ(compare_relative(longer, truth, matches)->distance_m, 20.0);
+  const auto scaled = compare_relative(longer, truth, matches, 30.0);
+  EXPECT_EQ(scaled->stretches, 91);
   EXPECT_NEAR(scaled->trans_percent, 2.0, 1e-9);
   EXPECT_NEAR(scaled->rot_deg_per_m, 0.0, 1e-9);
-  const auto turned = compare_relative(turning, truth, matches, 20.0);
+  const auto turned = compare_relative(turning, truth, matches, 30.0);
   EXPECT_NEAR(turned->rot_deg_per_m, 1e-3 * 180 / pi, 1e-9);
   EXPECT_FALSE(compare_relative(longer, truth, matches, 1000.0));
 }

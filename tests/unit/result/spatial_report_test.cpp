@@ -33,7 +33,8 @@ class SpatialReportTest : public testing::Test {
             run_.truth, step_times_, pictures_};
   }
   nlohmann::ordered_json plot(const std::string& title) const {
-    for (const auto& plot : make_report_data(input())["plots"])
+    const auto data = make_report_data(input());
+    for (const auto& plot : data["plots"])
       if (plot["title"] == title) return plot;
     return {};
   }

@@ -1,0 +1,67 @@
+// What EkfSlam does with observations that it doubts, between association and correction.
+
+#include <stdexcept>
+
+#include <libslam/filter/ekf_slam.hpp>
+
+namespace libslam {
+
+void EkfSlam::respond(std::span<const Feature> features, UpdateOutcome& outcome) {
+  DisturbanceResponse& response = *parts_.disturbance;
+  const RespondingFilter self{state_,
+                              pose_,
+                              ekf_,
+                              *parts_.measurement,
+                              parts_.registry,
+                              [&] { return associate(features); }};
+  const Doubt doubt = response.answer(self, {features, verdicts_, accepted(), measured_});
+  if (doubt == Doubt::kNone) return;
+  if (response.began()) outcome.event = "disturbance";
+  if (response.became_lost()) outcome.event = "lost";
+  for (Verdict& verdict : verdicts_)
+    if (verdict.outcome == Outcome::kNew || doubt == Doubt::kUnexplained)
+      verdict.outcome = Outcome::kAmbiguous;
+  if (doubt == Doubt::kUnexplained) linearize_pairs(features);
+  if (const auto found = response.search_map(self, features)) {
+    start_again_at(*found, features);
+    if (!response.began()) outcome.event = "relocalized";
+  }
+}
+
+void EkfSlam::start_again_at(const FoundPose& found, std::span<const Feature> features) {
+  ekf_.propagate(state_, {pose_, found.T_world_robot, {}, found.cov_uninformed});
+  verdicts_.assign(features.size(), {});
+  for (const auto& [feature, landmark] : found.pairs)
+    verdicts_[feature] = {Outcome::kPaired, landmark};
+  linearize_pairs(features);
+}
+
+void EkfSlam::lose_pose() {
+  if (!parts_.disturbance)
+    throw std::invalid_argument("a filter without a response to disturbances keeps its pose");
+  parts_.disturbance->lose();
+}
+
+void EkfSlam::reject_impossible(std::span<const Feature> features, UpdateOutcome& outcome) {
+  if (measured_.empty()) return;
+  // Rejected innovations count where they are many: a tracker that froze fails every gate once the
+  // odometry is good enough.
+  const bool most_rejected = 2 * used_.size() <= measured_.size();
+  ekf_.expect(state_, pose_,
+              most_rejected ? std::span<const LinearizedMeasurement>(measured_) : accepted(),
+              joint_);
+  const bool impossible = parts_.implied_input->impossible(joint_);
+  parts_.implied_input->restart();
+  if (!impossible) return;
+  outcome.event = "impossible_motion";
+  for (Verdict& verdict : verdicts_) {
+    const bool has_partner =
+        verdict.outcome == Outcome::kPaired || verdict.outcome == Outcome::kGated;
+    if (has_partner) verdict.outcome = landmarks_given_ ? Outcome::kGated : Outcome::kNew;
+  }
+  if (!landmarks_given_)
+    for (const BlockId block : parts_.registry.clear()) state_.remove(block);
+  linearize_pairs(features);
+}
+
+}  // namespace libslam

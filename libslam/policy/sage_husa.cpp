@@ -58,9 +58,8 @@ SageHusa::SageHusa(const NoiseAdaptationParameters& parameters,
     : parameters_(parameters),
       components_(std::move(components)),
       classic_(parameters.method == "classic"),
-      grows_(std::ranges::any_of(components_, [](const NoiseComponent& c) {
-        return c.growth_per_m > 0.0;
-      })) {
+      grows_(std::ranges::any_of(components_,
+                                 [](const NoiseComponent& c) { return c.growth_per_m > 0.0; })) {
   if (parameters.method != "residual" && !classic_)
     refuse("unknown method '" + parameters.method + "'");
   if (!(parameters.forgetting > 0.0 && parameters.forgetting < 1.0))

@@ -43,10 +43,10 @@ TEST(NoiseAdaptation, CostsNothingWhereTheNoiseIsRightAndFindsItWhereItIsNot) {
   for (const char* variant : {"right", "right_adaptive", "right_classic", "small_adaptive",
                               "large_adaptive", "small_classic", "large_classic"})
     EXPECT_EQ(run.done(variant), kPaired) << variant;
-  EXPECT_LE(run.ratio("right_adaptive", "right", kPosition), 1.03);   // .99
-  EXPECT_LE(run.ratio("small_adaptive", "small", kPosition), 0.88);   // .85 (two batches)
-  EXPECT_LE(nees(run, "small_adaptive") / nees(run, "small"), 0.5);   // .40
-  EXPECT_LE(run.ratio("large_adaptive", "large", kPosition), 1.0);    // .91
+  EXPECT_LE(run.ratio("right_adaptive", "right", kPosition), 1.03);  // .99
+  EXPECT_LE(run.ratio("small_adaptive", "small", kPosition), 0.88);  // .85 (two batches)
+  EXPECT_LE(nees(run, "small_adaptive") / nees(run, "small"), 0.5);  // .40
+  EXPECT_LE(run.ratio("large_adaptive", "large", kPosition), 1.0);   // .91
 }
 
 TEST(NoiseAdaptation, FollowsASensorThatBecomesNoisy) {
@@ -54,7 +54,7 @@ TEST(NoiseAdaptation, FollowsASensorThatBecomesNoisy) {
   for (std::size_t point = 0; point < 4; ++point)
     EXPECT_EQ(run.done("adaptive", point), kPaired) << point;
   const std::size_t throughout = 1;
-  EXPECT_LE(run.ratio("adaptive", "fixed", kPosition, throughout), 0.88);  // .71
+  EXPECT_LE(run.ratio("adaptive", "fixed", kPosition, throughout), 0.88);              // .71
   EXPECT_LE(nees(run, "adaptive", throughout) / nees(run, "fixed", throughout), 0.5);  // .31
 }
 

@@ -1,5 +1,6 @@
 #include <map>
 #include <set>
+#include <tests/support/pairwise_compatibility.hpp>
 
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
@@ -13,7 +14,7 @@ using namespace libslam;
 namespace {
 
 /// Squared distances given by hand.
-class Table final : public testing::PairwiseCompatibility {
+class Table final : public libslam::testing::PairwiseCompatibility {
  public:
   explicit Table(std::vector<std::vector<double>> distance2) : distance2_(std::move(distance2)) {}
   std::optional<Match> test(std::size_t feature, std::size_t landmark, double limit) override {

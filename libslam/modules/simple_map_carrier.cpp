@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <Eigen/Dense>  // before any use of asEigen()
@@ -23,11 +24,12 @@ using mrpt::obs::CObservation;
 using mrpt::obs::CObservationComment;
 using mrpt::obs::CSensoryFrame;
 
-constexpr const char* kLabel = "libslam map";
+/// What the text begins with; MRPT does not store the label of a comment.
+constexpr std::string_view kPrefix = "libslam map, base64:\n";
 
 bool is_map(const CObservation::Ptr& observation) {
-  return observation && observation->sensorLabel == kLabel &&
-         std::dynamic_pointer_cast<CObservationComment>(observation) != nullptr;
+  const auto comment = std::dynamic_pointer_cast<CObservationComment>(observation);
+  return comment && comment->text.starts_with(kPrefix);
 }
 
 /// Noise and calibration have no say where poses are exact.
@@ -61,8 +63,8 @@ LogStep step_to(const mrpt::poses::CPose2D& moved, const CSensoryFrame::Ptr& fra
 void attach_map(const SavedMap& map, CSimpleMap& key_frames) {
   const std::string bytes = encode_map(map);
   auto comment = CObservationComment::Create();
-  comment->sensorLabel = kLabel;
   mrpt::system::encodeBase64(std::vector<std::uint8_t>(bytes.begin(), bytes.end()), comment->text);
+  comment->text.insert(0, kPrefix);
   auto& last = key_frames.getAsPair(key_frames.size() - 1);
   last.sf = CSensoryFrame::Create(*last.sf);  // the frame is shared, its list of observations not
   last.sf->insert(comment);
@@ -72,13 +74,12 @@ std::optional<SavedMap> attached_map(const CSimpleMap& key_frames) {
   for (std::size_t i = key_frames.size(); i-- > 0;)
     for (const CObservation::Ptr& observation : *key_frames.getAsPair(i).sf) {
       if (!is_map(observation)) continue;
+      const std::string name = "simple map: the landmark map in frame " + std::to_string(i);
+      const auto& comment = dynamic_cast<const CObservationComment&>(*observation);
       std::vector<std::uint8_t> bytes;
-      if (!mrpt::system::decodeBase64(
-              std::dynamic_pointer_cast<CObservationComment>(observation)->text, bytes))
-        throw InputError("simple map: the landmark map in frame " + std::to_string(i) +
-                         " is damaged");
-      return decode_map({reinterpret_cast<const char*>(bytes.data()), bytes.size()},
-                        "simple map: the landmark map in frame " + std::to_string(i));
+      if (!mrpt::system::decodeBase64(comment.text.substr(kPrefix.size()), bytes))
+        throw InputError(name + " is damaged");
+      return decode_map({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, name);
     }
   return std::nullopt;
 }

@@ -9,6 +9,8 @@
 
 #include <libslam/config/ini_loader.hpp>
 #include <libslam/config/parameter_table.hpp>
+#include <libslam/data/step_record.hpp>
+#include <libslam/io/rawlog_player.hpp>
 #include <libslam/modules/range_bearing_slam_2d.hpp>
 
 #include "support/config_error_message.hpp"
@@ -115,6 +117,27 @@ TEST(RangeBearingSlam2dOptions, BadOnesAreNamed) {
   // The default motion model has no wheels to calibrate.
   EXPECT_NE(message("[libslam.calibration.scale_left]\nenabled = true\n").find("motion.model"),
             std::string::npos);
+}
+
+// The shipped file calibrates and adapts: the demo was simulated with 3 cm and 0.1 degrees, and
+// wheels that are what they are said to be.
+TEST(RangeBearingSlam2dOptions, OfTheShippedFileAdapt) {
+  RangeBearingSlam2D slam;
+  slam.setMinLoggingLevel(mrpt::system::LVL_ERROR);
+  slam.loadOptions(mrpt::config::CConfigFile(LIBSLAM_SOURCE_DIR "/config/mrpt_adaptive.ini"));
+  EXPECT_TRUE(slam.getCurrentNoise().empty());  // before the first pair
+  RawlogPlayer player("/usr/share/mrpt/datasets/kf-slam_demo.rawlog");
+  while (auto step = player.next()) slam.processActionObservation(step->action, step->frame);
+  const std::vector<AdaptedNoise> noise = slam.getCurrentNoise();
+  ASSERT_EQ(noise.size(), 2U);
+  EXPECT_EQ(noise[0].name, "range");
+  EXPECT_NEAR(noise[0].configured, 0.1, 1e-6);
+  EXPECT_NEAR(noise[0].sigma, 0.03, 0.006);
+  EXPECT_NEAR(mrpt::RAD2DEG(noise[1].sigma), 0.1, 0.02);
+  const std::vector<CalibrationValue> calibration = slam.getCurrentCalibration();
+  ASSERT_EQ(calibration.size(), 2U);
+  for (const CalibrationValue& wheel : calibration) EXPECT_NEAR(wheel.mean, 1.0, 0.05);
+  EXPECT_EQ(slam.getLastEvent(), "");
 }
 
 }  // namespace

@@ -80,10 +80,13 @@ Index Ekf::stack(const GaussianState& state, std::span<const LinearizedMeasureme
 }
 
 bool Ekf::factorize(std::span<const LinearizedMeasurement> measurements, Index m) {
+  own_.clear();
   Index row = 0;
   for (const auto& measurement : measurements) {
     const Index rows = measurement.innovation.size();
-    s_.block(row, row, rows, rows) += measurement.cov;
+    auto own = s_.block(row, row, rows, rows);
+    own += measurement.cov;
+    own_.emplace_back(own);
     row += rows;
   }
   Eigen::Ref<Eigen::MatrixXd> s = s_.topLeftCorner(m, m);
@@ -147,6 +150,7 @@ Correction Ekf::correct(GaussianState& state, BlockId pose,
 }
 
 // With W = L^-1 [0 .. R_i .. 0]^T, zero above the rows of i:  e_i = W^T L^-1 nu, C_i = R_i - W^T W.
+// Plain loops: the blocks are so small that general products and solvers cost several times more.
 void Ekf::look_back(std::span<const LinearizedMeasurement> measurements,
                     std::vector<Postfit>& out) {
   Index m = 0;
@@ -156,21 +160,35 @@ void Ekf::look_back(std::span<const LinearizedMeasurement> measurements,
   Index row = 0;
   for (std::size_t i = 0; i < measurements.size(); ++i) {
     const LinearizedMeasurement& measurement = measurements[i];
-    const Index rows = measurement.innovation.size(), behind = m - row;
-    auto w = divided_.topLeftCorner(behind, rows);
-    w.setZero();
-    w.topRows(rows) = measurement.cov;
-    s_.block(row, row, behind, behind).triangularView<Eigen::Lower>().solveInPlace(w);
-    const auto lower = s_.block(row, 0, rows, row + rows);
+    const Index rows = measurement.innovation.size();
     Postfit& postfit = out[i];
     postfit.innovation = measurement.innovation;
-    postfit.cov_innovation = lower.leftCols(row) * lower.leftCols(row).transpose();
-    const MeasurementMatrix own = lower.rightCols(rows).triangularView<Eigen::Lower>();
-    postfit.cov_innovation.noalias() += own * own.transpose();
-    postfit.residual.noalias() = w.transpose() * white_.segment(row, behind);
+    postfit.residual.resize(rows);
     postfit.cov_predicted = measurement.cov;
-    postfit.cov_predicted.noalias() -= w.transpose() * w;
+    postfit.cov_innovation = own_[i];
+    for (Index c = 0; c < rows; ++c) {
+      divide(measurement.cov, row, c, m);
+      const auto w = divided_.col(c).segment(row, m - row);
+      postfit.residual[c] = w.dot(white_.segment(row, m - row));
+      for (Index k = 0; k <= c; ++k) {
+        postfit.cov_predicted(k, c) -= w.dot(divided_.col(k).segment(row, m - row));
+        postfit.cov_predicted(c, k) = postfit.cov_predicted(k, c);
+      }
+    }
     row += rows;
+  }
+}
+
+/// Column `c` of divided_, from `row` to `m`: L^-1 times that column of `cov`, which stands at
+/// `row`.
+void Ekf::divide(const MeasurementMatrix& cov, Index row, Index c, Index m) {
+  auto x = divided_.col(c);
+  x.segment(row, cov.rows()) = cov.col(c);
+  x.segment(row + cov.rows(), m - row - cov.rows()).setZero();
+  for (Index j = row; j < m; ++j) {
+    const auto l = s_.col(j).segment(j + 1, m - j - 1);
+    x[j] /= s_(j, j);
+    x.segment(j + 1, m - j - 1) -= x[j] * l;
   }
 }
 

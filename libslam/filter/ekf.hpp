@@ -81,11 +81,13 @@ class Ekf {
   double squared_distance(Eigen::Index m);
 
   void reserve_divided(Eigen::Index m);
+  void divide(const MeasurementMatrix& cov, Eigen::Index row, Eigen::Index c, Eigen::Index m);
 
   std::unique_ptr<ErrorFrame> frame_;
   std::vector<PlacedJacobian> placed_;
   std::vector<JacobianRows> rows_;
   std::vector<Eigen::Index> considered_;
+  std::vector<MeasurementMatrix> own_;  // diagonal blocks of S
   Eigen::MatrixXd s_;
   Eigen::MatrixXd divided_;  // L^-1 times R of one measurement, or the columns of one block
   Eigen::VectorXd nu_, white_, delta_;

@@ -25,8 +25,23 @@ double distance_of(const Feature& feature) {
   return feature.camera->fx * feature.camera->baseline / std::max(feature.z[2], 1.0);
 }
 
-void require(bool holds, const std::string& what) {
-  if (!holds) throw std::invalid_argument("noise adaptation: " + what);
+/// M <- L^-1 M, L lower triangular; so small that a general solver would cost several times more.
+template <class Matrix>
+void divide(const MeasurementMatrix& lower, Matrix&& m) {
+  for (Index c = 0; c < m.cols(); ++c)
+    for (Index r = 0; r < m.rows(); ++r) {
+      for (Index k = 0; k < r; ++k) m(r, c) -= lower(r, k) * m(k, c);
+      m(r, c) /= lower(r, r);
+    }
+}
+
+[[noreturn]] void refuse(const std::string& what) {
+  throw std::invalid_argument("noise adaptation: " + what);
+}
+
+/// What it takes is not built unless it fails: this runs for every feature.
+void require(bool holds, const char* what) {
+  if (!holds) refuse(what);
 }
 
 /// The symmetric matrix with every eigenvalue at least `floor`.
@@ -40,20 +55,24 @@ MeasurementMatrix raised(const MeasurementMatrix& symmetric, double floor) {
 
 SageHusa::SageHusa(const NoiseAdaptationParameters& parameters,
                    std::vector<NoiseComponent> components, GateProbabilities gate)
-    : parameters_(parameters), components_(std::move(components)) {
-  require(parameters.method == "residual" || parameters.method == "classic",
-          "unknown method '" + parameters.method + "'");
-  require(parameters.forgetting > 0.0 && parameters.forgetting < 1.0,
-          "forgetting must be in (0, 1), got " + std::to_string(parameters.forgetting));
-  require(parameters.prior_weight >= 1.0,
-          "prior_weight must be >= 1, got " + std::to_string(parameters.prior_weight));
-  require(parameters.channels >= 1,
-          "channels must be >= 1, got " + std::to_string(parameters.channels));
-  require(!components_.empty() && components_.size() <= kMaxMeasurementDimension,
-          "measurements of dimension " + std::to_string(components_.size()));
+    : parameters_(parameters),
+      components_(std::move(components)),
+      classic_(parameters.method == "classic"),
+      grows_(std::ranges::any_of(components_,
+                                 [](const NoiseComponent& c) { return c.growth_per_m > 0.0; })) {
+  if (parameters.method != "residual" && !classic_)
+    refuse("unknown method '" + parameters.method + "'");
+  if (!(parameters.forgetting > 0.0 && parameters.forgetting < 1.0))
+    refuse("forgetting must be in (0, 1), got " + std::to_string(parameters.forgetting));
+  if (!(parameters.prior_weight >= 1.0))
+    refuse("prior_weight must be >= 1, got " + std::to_string(parameters.prior_weight));
+  if (parameters.channels < 1)
+    refuse("channels must be >= 1, got " + std::to_string(parameters.channels));
+  if (components_.empty() || components_.size() > kMaxMeasurementDimension)
+    refuse("measurements of dimension " + std::to_string(components_.size()));
   for (const NoiseComponent& c : components_)
-    require(c.floor > 0.0 && c.floor < c.ceiling,
-            "the floor of sigma of " + c.name + " must be positive and below its ceiling");
+    if (!(c.floor > 0.0 && c.floor < c.ceiling))
+      refuse("the floor of sigma of " + c.name + " must be positive and below its ceiling");
   const auto dimension = static_cast<Index>(components_.size());
   kappa_identified_ = gated_covariance(gate.identified, static_cast<int>(dimension));
   kappa_anonymous_ = gated_covariance(gate.anonymous, static_cast<int>(dimension));
@@ -68,15 +87,15 @@ SageHusa::SageHusa(const NoiseAdaptationParameters& parameters,
 }
 
 std::size_t SageHusa::slot(int channel) const {
-  require(channel >= 0, "channel " + std::to_string(channel));
+  require(channel >= 0, "a channel below 0");
   return std::min(static_cast<std::size_t>(channel), channels_.size() - 1);
 }
 
 MeasurementMatrix SageHusa::shape_of(const Feature& feature, Channel& channel) const {
   const auto dimension = static_cast<Index>(components_.size());
-  require(feature.z.size() == dimension && feature.cov.rows() == dimension,
-          "a feature of dimension " + std::to_string(feature.z.size()) + ", expected " +
-              std::to_string(dimension));
+  if (feature.z.size() != dimension || feature.cov.rows() != dimension)
+    refuse("a feature of dimension " + std::to_string(feature.z.size()) + ", expected " +
+           std::to_string(dimension));
   const Eigen::LLT<MeasurementMatrix> factor(feature.cov);
   require(factor.info() == Eigen::Success, "the covariance of a feature is not positive definite");
   MeasurementMatrix shape = factor.matrixL();
@@ -102,37 +121,41 @@ void SageHusa::bound(MeasurementMatrix& cov) const {
     cov.row(j) *= scale;
     cov.col(j) *= scale;
   }
-  if (parameters_.method == "classic") return;  // repaired by its eigenvalues, or not at all
+  if (classic_) return;  // repaired by its eigenvalues, or not at all
   const MeasurementMatrix diagonal = cov.diagonal().asDiagonal();
   cov += kIndependence * (diagonal - cov);
 }
 
 void SageHusa::apply(std::span<Feature> features) {
   shapes_.clear();
+  const Feature* last = nullptr;
   for (Feature& feature : features) {
     Channel& channel = channels_[slot(feature.channel)];
-    const MeasurementMatrix& shape = shapes_.emplace_back(shape_of(feature, channel));
-    const MeasurementMatrix half = shape * channel.factor;
-    feature.cov.noalias() = half * shape.transpose();
-    bound(feature.cov);
+    // Most sensors give all their features the same covariance.
+    if (last != nullptr && !grows_ && feature.channel == last->channel &&
+        feature.cov.rows() == last_cov_.rows() && feature.cov == last_cov_) {
+      shapes_.push_back(shapes_.back());
+      feature.cov = last->cov;
+    } else {
+      last_cov_ = feature.cov;
+      const MeasurementMatrix& shape = shapes_.emplace_back(shape_of(feature, channel));
+      const MeasurementMatrix half = shape * channel.factor;
+      feature.cov.noalias() = half * shape.transpose();
+      bound(feature.cov);
+    }
+    last = &feature;
     if (parameters_.bias) feature.z -= channel.bias;
   }
 }
 
 MeasurementMatrix SageHusa::sample(const Postfit& postfit, const MeasurementMatrix& shape,
                                    const MeasurementMatrix& cov, double kappa) const {
-  const auto lower = shape.triangularView<Eigen::Lower>();
-  MeasurementMatrix added;
-  MeasurementVector error;
-  if (parameters_.method == "residual") {
-    error = lower.solve(postfit.residual);
-    added = postfit.cov_predicted;
-  } else {
-    error = lower.solve(postfit.innovation);
-    added = cov - postfit.cov_innovation;
-  }
-  lower.solveInPlace(added);
-  lower.solveInPlace(added.transpose());
+  MeasurementVector error = classic_ ? postfit.innovation : postfit.residual;
+  MeasurementMatrix added = postfit.cov_predicted;
+  if (classic_) added = cov - postfit.cov_innovation;
+  divide(shape, error);
+  divide(shape, added);
+  divide(shape, added.transpose());
   added += error * error.transpose() / kappa;
   return added;
 }
@@ -164,7 +187,7 @@ void SageHusa::blend(Channel& channel) const {
   const double share = d / channel.count;
   channel.factor =
       (1.0 - d) * channel.factor + 0.5 * share * (channel.sum + channel.sum.transpose()).eval();
-  if (parameters_.method == "classic" && parameters_.eigenvalue_floor > 0.0)
+  if (classic_ && parameters_.eigenvalue_floor > 0.0)
     channel.factor = raised(channel.factor, parameters_.eigenvalue_floor);
   if (parameters_.bias) channel.bias += share * channel.sum_innovation;
 }

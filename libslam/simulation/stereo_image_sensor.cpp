@@ -2,7 +2,6 @@
 #include <cmath>
 #include <random>
 
-#include <mrpt/img/CImage.h>
 #include <mrpt/obs/CObservationStereoImages.h>
 
 #include <libslam/simulation/planar_pose.hpp>

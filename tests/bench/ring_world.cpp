@@ -72,7 +72,7 @@ class Generator {
       const double angle = 2.0 * kPi * landmark / landmarks_;
       const auto seen =
           pose.inverseComposePoint({radius_ * std::cos(angle), radius_ * std::sin(angle)});
-      CObservationBearingRange::TMeasurement measured;
+      CObservationBearingRange::TMeasurement measured{};
       measured.landmarkID = (landmark + landmarks_) % landmarks_;
       measured.range = static_cast<float>(seen.norm() + RingWorld::kSigmaRange * normal_(random_));
       measured.yaw = static_cast<float>(std::atan2(seen.y, seen.x) +

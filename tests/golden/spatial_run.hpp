@@ -17,15 +17,27 @@ inline LogRun run_spatial(const std::string& config, const SpatialLog& log,
   return run_log(config, rawlog, directory, settings);
 }
 
-/// Path figures of a part of the run in `directory`.
+/// A part of the run in `directory` against its truth.
+inline TruthComparison compare_part(const std::filesystem::path& directory,
+                                    const RunWindow& window) {
+  const GroundTruth truth = read_truth(find_truth(directory.string() + ".rawlog"));
+  return compare_with_truth(read_recorded_run(directory), truth, LandmarkIdentity::known, window);
+}
+
+/// Path figures of some steps.
 inline PathErrors errors_of_steps(const std::filesystem::path& directory, std::int64_t first,
                                   std::int64_t last) {
   RunWindow window;
   window.first_step = first;
   window.last_step = last;
-  const GroundTruth truth = read_truth(find_truth(directory.string() + ".rawlog"));
-  return *compare_with_truth(read_recorded_run(directory), truth, LandmarkIdentity::known, window)
-              .path;
+  return *compare_part(directory, window).path;
+}
+
+/// Mean NEES from a time on [s since the first step].
+inline double nees_after(const std::filesystem::path& directory, double from_s) {
+  RunWindow window;
+  window.from_s = from_s;
+  return compare_part(directory, window).nees->mean;
 }
 
 inline double degrees(double radians) {

@@ -2,7 +2,11 @@
 // of its pixels are common to all of a frame (correlation of left and right .9, from frame to frame
 // .8), so consistency is no bar here where the map is known.
 
+#include <cmath>
+#include <map>
+#include <string>
 #include <tests/golden/spatial_run.hpp>
+#include <utility>
 
 #include <libslam/io/importers/starry_night.hpp>
 
@@ -64,4 +68,55 @@ TEST_F(StarryNight, MapsTheMarkersWithTheInvariantFrameAlone) {
   settings.push_back("filter.error_frame=standard");
   const LogRun standard = run_spatial(kConfig, log, directory(), settings);
   EXPECT_LE(truth.nees->mean, 0.25 * standard.summary.truth->nees->mean);
+}
+
+namespace {
+
+/// The sigmas of the configuration, multiplied; adapted from there on.
+std::vector<std::string> adapted_from(double factor) {
+  std::vector<std::string> settings = {"policies.noise_adaptation.method=residual",
+                                       "policies.noise_adaptation.forgetting=0.99"};
+  for (const auto& [name, sigma] : {std::pair("u_left", 6.16279), std::pair("v_left", 11.3945),
+                                    std::pair("u_right", 6.47709), std::pair("v_right", 11.5104)})
+    settings.push_back(std::string("measurement.stereo.sigma_") + name + "=" +
+                       std::to_string(factor * sigma));
+  return settings;
+}
+
+}  // namespace
+
+TEST_F(StarryNight, LocalizesWithNoiseThatIsAdaptedFromNineTimesTheVariance) {
+  LIBSLAM_REQUIRE_DATA(data, "utias_starry_night");
+  const SpatialLog log = import_starry_night(data);
+  write_spatial_log(log, directory().string() + ".rawlog");
+  run_spatial(kConfig, log, directory(), in_the_map(adapted_from(3.0)));
+  const PathErrors window = errors_of_steps(directory(), kFirst, kLast);
+  EXPECT_LE(window.raw->rmse_m, 0.034);
+  EXPECT_LE(degrees(window.rotation->rmse_rad), 3.1);
+}
+
+// Real pixels have errors in common, for which small sigmas are right. On white ones the adapted
+// sigmas must be those of the simulation, from either side. The pose is judged after 30 s, as
+// adaptation is elsewhere: from a ninth of the variance the first seconds are overconfident.
+TEST_F(StarryNight, AdaptsToWhitePixels) {
+  LIBSLAM_REQUIRE_DATA(data, "utias_starry_night");
+  SpatialLog log = import_starry_night(data);
+  const Eigen::Vector4d sigma = starry_night_sigma(log), variance = sigma.cwiseAbs2();
+  simulate_pixels(log, sigma, 1);
+  const std::map<std::string, double> true_sigma = {
+      {"u", sigma[0]},
+      {"v", std::sqrt(variance[1] * variance[3] / (variance[1] + variance[3]))},
+      {"d", std::sqrt(variance[0] + variance[2])}};
+  write_spatial_log(log, directory().string() + ".rawlog");
+  const LogRun right = run_spatial(kConfig, log, directory(), in_the_map());
+  const double rmse = right.summary.truth->path->raw->rmse_m;
+  const double settled = nees_after(directory(), 30.0);
+  for (const double factor : {3.0, 1.0 / 3.0}) {
+    const LogRun run = run_spatial(kConfig, log, directory(), in_the_map(adapted_from(factor)));
+    ASSERT_EQ(run.summary.result.noise.size(), true_sigma.size());
+    for (const AdaptedNoise& noise : run.summary.result.noise)
+      EXPECT_NEAR(noise.sigma / true_sigma.at(noise.name), 1.0, 0.05) << noise.name;
+    EXPECT_LE(run.summary.truth->path->raw->rmse_m, 1.08 * rmse) << factor;
+    EXPECT_LE(nees_after(directory(), 30.0), 1.4 * settled) << factor;
+  }
 }

@@ -10,7 +10,7 @@ namespace libslam {
 /// Section `policies.noise_adaptation`.
 struct NoiseAdaptationParameters {
   std::string method = "off";
-  double forgetting = 0.98;
+  double forgetting = 0.96;
   double prior_weight = 20.0;
   int channels = 1;
   bool bias = false;

@@ -112,6 +112,7 @@ void place_image(const fs::path& source, const fs::path& folder, const std::stri
   if (pixels.empty()) throw InputError(source.string() + ": is no image");
   if (!fs::copy_file(source, folder / name, fs::copy_options::overwrite_existing))
     throw std::runtime_error((folder / name).string() + ": cannot be written");
+  fs::permissions(folder / name, fs::perms::owner_write, fs::perm_options::add);  // next import
   image.setExternalStorage(name);
   camera.ncols = static_cast<std::uint32_t>(pixels.cols);
   camera.nrows = static_cast<std::uint32_t>(pixels.rows);

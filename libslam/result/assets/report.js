@@ -36,7 +36,7 @@
       : "Ellipses hold the true place with 95 % probability; they should shrink when the robot comes back to known ground.");
     var entries = [{ text: "estimated path and landmarks, 95 % ellipses", colour: "estimate" }];
     if (hasTruth || hasTrueMap) entries.push({ text: "truth", colour: "truth" });
-    if (map.events) entries.push({ text: "event", colour: "warn" });
+    if (map.events) entries.push({ text: "event", colour: "event" });
     legend(plot, entries);
 
     var margin = { left: 62, right: 14, top: 8, bottom: 40 };
@@ -213,7 +213,7 @@
       entries.push({ text: (first.band || first.interval).name, colour: "band", shape: "key-band" });
     var withLevel = plotData.panels.filter(function (p) { return p.level; })[0];
     if (withLevel) entries.push({ text: withLevel.level.name, colour: "level", shape: "key-dashed" });
-    if (data.events) entries.push({ text: "event", colour: "warn", shape: "key-dashed" });
+    if (data.events) entries.push({ text: "event", colour: "event", shape: "key-dashed" });
     legend(plot, entries);
     plot.append("button").text("Whole run").on("click", function () { zoomTime(timeExtent); });
     plotData.panels.forEach(function (panel, i) {

@@ -35,7 +35,9 @@ var reportParts = (function () {
     if (panel.interval) values.push(panel.interval.low, panel.interval.high);
     if (panel.band) {
       // A band that starts wide must not flatten the curve: it may at most triple the range of the values.
-      var reach = panel.log ? Infinity : 1.5 * Math.max(own[1] - own[0], 1e-9 * Math.abs(own[1]), 1e-12);
+      // Around a constant it gives the scale.
+      var range = own[1] - own[0];
+      var reach = panel.log || range < 1e-9 * Math.abs(own[1]) + 1e-12 ? Infinity : 1.5 * range;
       panel.band.low.concat(panel.band.high).forEach(function (v, i) {
         if (isValue(v) && inside(i % panel.band.low.length))
           values.push(Math.max(own[0] - reach, Math.min(own[1] + reach, v)));
@@ -52,15 +54,19 @@ var reportParts = (function () {
     return [extent[0] - pad, extent[1] + pad];
   }
 
-  /// Powers of ten inside a domain; with few of them also twice and five times.
+  /// Powers of ten inside a domain; with few of them also multiples.
   function decades(domain) {
     var ticks = [], first = Math.floor(Math.log(domain[0]) / Math.LN10), last = Math.ceil(Math.log(domain[1]) / Math.LN10);
-    var factors = last - first > 3 ? [1] : [1, 2, 5];
-    for (var p = first; p <= last; ++p)
-      factors.forEach(function (f) {
-        var v = f * Math.pow(10, p);
-        if (v >= domain[0] && v <= domain[1]) ticks.push(v);
-      });
+    function fill(factors) {
+      ticks = [];
+      for (var p = first; p <= last; ++p)
+        factors.forEach(function (f) {
+          var v = f * Math.pow(10, p);
+          if (v >= domain[0] && v <= domain[1]) ticks.push(v);
+        });
+    }
+    fill(last - first > 3 ? [1] : [1, 2, 5]);
+    if (ticks.length < 2) fill([1, 1.5, 2, 3, 4, 5, 6, 7, 8, 9]);
     return ticks;
   }
 

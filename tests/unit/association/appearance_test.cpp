@@ -1,4 +1,5 @@
 #include <random>
+#include <tests/support/pairwise_compatibility.hpp>
 
 #include <gtest/gtest.h>
 
@@ -9,7 +10,7 @@ using namespace libslam;
 namespace {
 
 /// The same squared distance for every pair, or one by hand.
-class Everywhere final : public Compatibility {
+class Everywhere final : public libslam::testing::PairwiseCompatibility {
  public:
   explicit Everywhere(double distance2) : distance2_(distance2) {}
   std::optional<Match> test(std::size_t, std::size_t, double limit) override {

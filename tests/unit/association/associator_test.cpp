@@ -1,5 +1,6 @@
 #include <map>
 #include <set>
+#include <tests/support/pairwise_compatibility.hpp>
 
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
@@ -13,7 +14,7 @@ using namespace libslam;
 namespace {
 
 /// Squared distances given by hand.
-class Table final : public Compatibility {
+class Table final : public libslam::testing::PairwiseCompatibility {
  public:
   explicit Table(std::vector<std::vector<double>> distance2) : distance2_(std::move(distance2)) {}
   std::optional<Match> test(std::size_t feature, std::size_t landmark, double limit) override {
@@ -22,15 +23,8 @@ class Table final : public Compatibility {
       return std::nullopt;  // "certainly far": any bound above the limit will do
     return Match{d2, 0.0};
   }
-  // No joint tests.
-  void select(std::span<const Pairing>) override {}
-  const MeasurementVector& innovation(std::size_t) const override { return none_; }
-  const MeasurementMatrix& noise(std::size_t) const override { return no_noise_; }
-  MeasurementMatrix covariance(std::size_t, std::size_t) const override { return no_noise_; }
 
  private:
-  MeasurementVector none_;
-  MeasurementMatrix no_noise_;
   std::vector<std::vector<double>> distance2_;
 };
 

@@ -59,10 +59,8 @@ TEST(LandmarkRegistry, ForgetsWhatIsNotSeenForSomeUpdates) {
   registry.add(BlockId{1}, 10);
   registry.add(BlockId{2}, 20);
   EXPECT_TRUE(registry.record_update().empty());  // the update that added them
-  for (int update = 0; update < 2; ++update) {
-    registry.record_sighting(0);
-    EXPECT_TRUE(registry.record_update().empty()) << update;
-  }
+  registry.record_sighting(0);
+  EXPECT_TRUE(registry.record_update().empty());  // one without the second
   registry.record_sighting(0);
   EXPECT_EQ(registry.record_update(), std::vector<BlockId>{BlockId{2}});
   EXPECT_EQ(*registry.find(10), 0U);

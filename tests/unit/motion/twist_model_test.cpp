@@ -157,7 +157,8 @@ TEST(BodyTwist, CalibrationActsAsDocumented) {
   const BlockVector a = SpatialMotion(corrected, start).step(corrected, action_of(read)).estimate;
   const BlockVector b = SpatialMotion(plain, start).step(plain, action_of(real)).estimate;
   EXPECT_LT((a - b).norm(), 1e-13);
-  for (const CalibrationSpec& spec : BodyTwist({}, all_biases()).calibration())
+  const BodyTwist calibrated({}, all_biases());
+  for (const CalibrationSpec& spec : calibrated.calibration())
     EXPECT_EQ(spec.additive, spec.name.starts_with("bias")) << spec.name;
 }
 

@@ -22,6 +22,7 @@ namespace {
 NoiseAdaptationParameters residual_form() {
   NoiseAdaptationParameters parameters;
   parameters.method = "residual";
+  parameters.forgetting = 0.98;
   return parameters;
 }
 

@@ -7,6 +7,7 @@
 //         and counted, never thrown.
 
 #include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,8 @@ class Frontend {
   virtual std::int64_t unusable() const = 0;
   /// One line for each of the first defects, and whatever else the user should know.
   virtual std::vector<std::string> warnings() const { return {}; }
+  /// How well it works, by name, for run.json; empty if there is nothing to say.
+  virtual std::map<std::string, double> figures() const { return {}; }
 };
 
 }  // namespace libslam

@@ -170,8 +170,14 @@ std::vector<std::string> StereoFeatures::warnings() const {
   return all;
 }
 
-StereoFigures StereoFeatures::figures() const {
-  return cameras_.empty() ? StereoFigures{} : cameras_.front()->figures;
+std::map<std::string, double> StereoFeatures::figures() const {
+  if (cameras_.empty()) return {};
+  const StereoFigures& first = cameras_.front()->figures;
+  return {{"pairs", static_cast<double>(first.pairs)},
+          {"least_matched", static_cast<double>(first.least_matched)},
+          {"mean_matched", first.mean_matched},
+          {"mean_followed", first.mean_followed},
+          {"mean_row_error_px", first.mean_row_error}};
 }
 
 }  // namespace libslam

@@ -62,6 +62,8 @@ class Pipeline {
   const OdometryReader& odometry() const { return odometry_; }
   /// What the last frame did to the filter; empty if it was not due.
   const UpdateOutcome& last_update() const { return last_update_; }
+  /// What the front-end made of the last frame, due or not.
+  std::span<const FeatureBatch> last_features() const { return batches_; }
 
  private:
   void propagate(const MotionAction* action);

@@ -1,7 +1,6 @@
 #include <chrono>
 #include <cmath>
 #include <exception>
-#include <sys/resource.h>
 #include <utility>
 
 #include <Eigen/Eigenvalues>
@@ -14,7 +13,9 @@
 #include <libslam/io/input_error.hpp>
 #include <libslam/io/map_file.hpp>
 #include <libslam/io/rawlog_player.hpp>
+#include <libslam/pipeline/frame_picture.hpp>
 #include <libslam/pipeline/pipeline.hpp>
+#include <libslam/pipeline/process_usage.hpp>
 #include <libslam/pipeline/run.hpp>
 #include <libslam/result/atomic_file.hpp>
 #include <libslam/result/recorder.hpp>
@@ -31,21 +32,6 @@ constexpr Eigen::Index kLargestSpectrum = 1500;
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-double cpu_seconds() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  const auto seconds = [](const timeval& t) {
-    return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
-  };
-  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
-}
-
-double peak_memory_mb() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<double>(usage.ru_maxrss) / 1024.0;
 }
 
 PlayerOptions player_options(const RunRequest& request) {
@@ -67,10 +53,9 @@ void require_folder_of_map(const std::filesystem::path& file) {
     throw std::runtime_error("cannot write " + file.string() + ": no directory " + folder.string());
 }
 
-/// Surveyed landmarks are in the frame of the truth, and so is a run that localizes among them.
+/// Surveyed landmarks stand in the frame of the truth, and so does a run among them.
 Placement placement_in(const MapParameters& map) {
-  const bool surveyed = !map.file.empty() && map.mode == "localize" && !is_saved_map(map.file);
-  return surveyed ? Placement::none : Placement::first;
+  return map.file.empty() || is_saved_map(map.file) ? Placement::first : Placement::none;
 }
 
 class Run {
@@ -177,7 +162,15 @@ class Run {
     unused_sightings_ += record.ambiguous + record.gated;
     recorder_.record(record);
     if (request_.parameters.output.mrpt_files) keep_frame(record, step.frame);
+    if (!has_picture_ && record.accepted > 0) draw(*step.frame);
     if (request_.on_step) request_.on_step(player_.progress(), record);
+  }
+
+  /// The first frame that corrected the filter, where it is one of images.
+  void draw(const mrpt::obs::CSensoryFrame& frame) {
+    has_picture_ = true;
+    if (auto picture = draw_frame(frame, pipeline_.last_features()))
+      recorder_.add_picture(std::move(*picture));
   }
 
   void keep_frame(const StepRecord& record, const mrpt::obs::CSensoryFrame::Ptr& frame) {
@@ -215,9 +208,6 @@ class Run {
                      {}};
     if (const std::string& map = request_.parameters.map.file; !map.empty()) {
       summary.input.map_file = map;
-      // Surveyed landmarks stand in the frame of the truth, and so does a run among them.
-      if (std::filesystem::path(map).extension() == ".csv")
-        summary.result.placement = Placement::none;
       summary.input.map_sha256 = sha256_of_file(map);
     }
     auto& warnings = summary.input.warnings;
@@ -232,6 +222,7 @@ class Run {
     warn_of_idle_schedule(warnings);
     warn_of_unused_sightings(warnings);
     fill_timing(summary);
+    summary.health.features = pipeline_.frontend().figures();
     const Eigen::MatrixXd cov = pipeline_.filter().state().full_covariance();
     if (cov.rows() <= kLargestSpectrum && cov.allFinite())
       summary.health.min_eigenvalue =
@@ -286,7 +277,7 @@ class Run {
   std::exception_ptr failure_;
   std::vector<std::string> warnings_;
   std::int64_t unusable_steps_ = 0, unused_sightings_ = 0;
-  bool any_used_ = false;
+  bool any_used_ = false, has_picture_ = false;
   int exit_code_ = 0;
   std::string status_ = "done";
 };

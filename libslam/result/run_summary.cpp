@@ -108,6 +108,7 @@ void visit_health(const auto& v, auto& health) {
   v("resamplings", health.resamplings);
   v("injected", health.injected);
   v("ess_min", health.ess_min);
+  v("features", health.features);
 }
 
 Json result_to_json(const RunSummary::Result& result) {
@@ -185,6 +186,8 @@ std::string to_json_text(const RunSummary& summary) {
                  [&](const Writer& s) { visit_timing(s, summary.timing, summary.timing.step_ms); });
   if (summary.timing.phases.empty()) object["timing"].erase("phases");
   writer.section("health", [&](const Writer& s) { visit_health(s, summary.health); });
+  if (summary.health.features.empty()) object["health"].erase("features");
+  if (object["health"].empty()) object.erase("health");
   if (!summary.health.events.empty())
     object["health"]["events"] = events_to_json(summary.health.events);
   if (summary.truth)

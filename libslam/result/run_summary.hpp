@@ -58,7 +58,8 @@ struct RunSummary {
     std::optional<double> nis_in_95, gated_fraction, min_eigenvalue;
     std::optional<std::int64_t> disturbances, resamplings, injected;
     std::optional<double> ess_min;
-    std::vector<RunEvent> events;  ///< the first ones, see StepStatistics
+    std::map<std::string, double> features;  ///< how well the front-end works (Frontend::figures)
+    std::vector<RunEvent> events;            ///< the first ones, see StepStatistics
   };
 
   std::string program, version, git;

@@ -6,8 +6,8 @@
 //         pairs of action and frame (processActionObservation),
 // Then    the pose is that of the last one, in space as MRPT's own types have it.
 //
-// Points come from CObservationStereoImagesFeatures, or with a front-end for images
-// (`parameters.frontend.source`) from CObservationStereoImages. What moves the pose between them:
+// Points come from CObservationStereoImagesFeatures, or with `parameters.frontend.source`
+// stereo_images or fiducials from CObservationStereoImages. What moves the pose between them:
 //
 // - input.odometry twist, the default: velocities of the vehicle, each of which holds until the
 //   next reading. Turn rates (IMU_WX, IMU_WY, IMU_WZ) come from CObservationIMU. The velocity comes

@@ -48,7 +48,7 @@ inline std::vector<mrpt::poses::CPose3DPDFGaussian> run(mrpt::slam::CMetricMapBu
   return path;
 }
 
-/// The demo's sensor as its simulator had it.
+/// The demo's sensor as MRPT's own configuration of it says.
 inline Parameters demo_parameters() {
   Parameters p;
   p.measurement.noise = "configured";

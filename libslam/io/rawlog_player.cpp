@@ -1,10 +1,10 @@
 #include <cmath>
+#include <filesystem>
 
 #include <mrpt/img/CImage.h>
 #include <mrpt/obs/CObservationBearingRange.h>
 #include <mrpt/obs/CObservationComment.h>
 #include <mrpt/obs/CObservationOdometry.h>
-#include <mrpt/obs/CRawlog.h>
 
 #include <libslam/io/body_velocity.hpp>
 #include <libslam/io/mrpt_fields.hpp>
@@ -35,6 +35,13 @@ OdometryReading reading_of(CObservationOdometry& odometry) {
   return reading;
 }
 
+/// Where MRPT's programs look for the images of X.rawlog: X_Images beside it, else Images. MRPT's
+/// own detectImagesDirectory (2.5.8) loses the separator after the folder of the log.
+std::string images_folder(const std::filesystem::path& file) {
+  const std::filesystem::path own = file.parent_path() / (file.stem().string() + "_Images");
+  return (std::filesystem::is_directory(own) ? own : file.parent_path() / "Images").string();
+}
+
 }  // namespace
 
 RawlogPlayer::RawlogPlayer(const std::string& file, const PlayerOptions& options)
@@ -43,7 +50,7 @@ RawlogPlayer::RawlogPlayer(const std::string& file, const PlayerOptions& options
       guard_(file, options.limits),
       pairs_(intake_),
       pace_(options.pacing) {
-  mrpt::img::CImage::setImagesPathBase(mrpt::obs::CRawlog::detectImagesDirectory(file));
+  mrpt::img::CImage::setImagesPathBase(images_folder(file));
   decide_flavour();
 }
 

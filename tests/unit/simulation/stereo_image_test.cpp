@@ -22,13 +22,13 @@ Scenario tagged_rooms() {
   s.world.generator = "rooms";
   s.world.rooms_x = 2;
   s.world.rooms_y = 1;
-  s.world.landmarks = 24;
+  s.world.landmarks = 12;
   s.world.max_height = 2.0;
   s.world.door_width = 1.4;
   s.drive.speed = 0.5;
   s.drive.way_point_radius = 0.3;
   s.drive.control_period_s = 0.05;
-  s.drive.max_duration_s = 4.0;
+  s.drive.max_duration_s = 12.0;
   s.range_bearing.enabled = false;
   s.stereo_images.enabled = true;
   s.stereo_images.pose = {0.2, -0.1, 15.0};

@@ -41,7 +41,7 @@ TEST_P(EveryTracker, MeasuresDisparityToAFractionOfAPixel) {
     EXPECT_LT(std::abs(sum / n), 0.03) << disparity;
     EXPECT_LT(std::sqrt(squares / n), 0.15) << disparity;
     EXPECT_EQ(ids.size(), batch.size());
-    EXPECT_LT(frontend.figures().mean_row_error, 0.1);
+    EXPECT_LT(frontend.figures().at("mean_row_error_px"), 0.1);
     EXPECT_TRUE(frontend.warnings().empty());
   }
 }
@@ -209,7 +209,7 @@ TEST_P(EveryTracker, WhatMovesByItselfIsNotDelivered) {
 TEST(StereoFeatures, ReportsRowErrorOfAWrongCalibration) {
   StereoFeatures frontend(stereo_parameters(), "", true);
   features_of(frontend, wall_at(20.0, 1, 1.2));
-  EXPECT_NEAR(frontend.figures().mean_row_error, 1.2, 0.1);
+  EXPECT_NEAR(frontend.figures().at("mean_row_error_px"), 1.2, 0.1);
   ASSERT_EQ(frontend.warnings().size(), 1U);
   EXPECT_NE(frontend.warnings()[0].find("1.2"), std::string::npos) << frontend.warnings()[0];
   StereoFeatures lost(stereo_parameters(), "", true);

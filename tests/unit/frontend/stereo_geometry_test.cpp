@@ -58,7 +58,7 @@ TEST(StereoRectifier, UndoesDistortionAndRotation) {
   StereoFeatures frontend(stereo_parameters("orb", "klt"), "", true);
   const FeatureBatch batch = features_of(frontend, pair);
   ASSERT_GT(batch.size(), 50U);
-  EXPECT_LT(frontend.figures().mean_row_error, 0.15);
+  EXPECT_LT(frontend.figures().at("mean_row_error_px"), 0.15);
   double sum = 0.0, squares = 0.0;
   for (const Feature& feature : batch) {
     const StereoCamera& camera = *feature.camera;

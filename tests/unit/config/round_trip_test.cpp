@@ -96,8 +96,8 @@ TEST(EffectiveConfiguration, ReadsLikeAPersonWouldWriteIt) {
   const std::string yaml = to_yaml({});
   for (const char* line :
        {"motion:\n",
-        "  # Motion model of the robot. (one of odometry_increment, differential, "
-        "ackermann)\n  model: odometry_increment\n",
+        " (one of odometry_increment, differential, ackermann, body_twist, constant_twist)\n"
+        "  model: odometry_increment\n",
         "  track_width: 0.5\n", "  noise:\n    # ", "    from_log: true\n",
         "  max_range: 1000000\n", "  sensor_label: \"\"\n", "    prior_sigma: 0.1\n"}) {
     EXPECT_NE(yaml.find(line), std::string::npos) << line;

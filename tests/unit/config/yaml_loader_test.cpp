@@ -85,7 +85,7 @@ INSTANTIATE_TEST_SUITE_P(
             "c.yaml:1:33: association.gate_probability: '2' is not a finite number >= 0 and <= 1"},
         BadText{"motion:\n  model: diferential\n",
                 "c.yaml:2:10: motion.model: 'diferential' is not one of odometry_increment, "
-                "differential, ackermann; nearest: differential"}));
+                "differential, ackermann, body_twist, constant_twist; nearest: differential"}));
 
 INSTANTIATE_TEST_SUITE_P(
     Syntax, YamlLoaderRejects,

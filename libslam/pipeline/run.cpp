@@ -250,7 +250,7 @@ class Run {
       return;
     }
     warnings.push_back(unused_sightings_ == 0
-                           ? "no range-bearing sighting passed the filters: this is odometry alone"
+                           ? "no sighting passed the filters: this is odometry alone"
                            : std::to_string(unused_sightings_) +
                                  " sightings, none used: where the log has no identities, set "
                                  "association.method to nearest_neighbour");

@@ -15,7 +15,10 @@ namespace {
 
 using namespace libslam::testing;
 
-class EveryTracker : public ::testing::TestWithParam<std::pair<const char*, const char*>> {
+/// Detector and tracker.
+using Tracker = std::pair<std::string, std::string>;
+
+class EveryTracker : public ::testing::TestWithParam<Tracker> {
  protected:
   FrontendParameters parameters() const {
     return stereo_parameters(GetParam().first, GetParam().second);
@@ -89,11 +92,11 @@ TEST_P(EveryTracker, SameBytesForAnyNumberOfThreads) {
   EXPECT_EQ(two, again);
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Stereo, EveryTracker,
-    ::testing::Values(std::pair("orb", "descriptors"), std::pair("akaze", "descriptors"),
-                      std::pair("sift", "descriptors"), std::pair("orb", "klt")),
-    [](const auto& of) { return std::string(of.param.first) + "_" + of.param.second; });
+INSTANTIATE_TEST_SUITE_P(Stereo, EveryTracker,
+                         ::testing::Values(Tracker("orb", "descriptors"),
+                                           Tracker("akaze", "descriptors"),
+                                           Tracker("sift", "descriptors"), Tracker("orb", "klt")),
+                         [](const auto& of) { return of.param.first + "_" + of.param.second; });
 
 TEST(StereoFeatures, CameraAndCovarianceAreThoseOfTheObservation) {
   const auto pair = wall_at(25.0);

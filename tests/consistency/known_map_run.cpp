@@ -58,7 +58,7 @@ class Localizer {
     for (const FeatureBatch& batch : batches_) {
       const UpdateOutcome outcome = filter_.update(batch);
       if (!filter_.healthy() || (outcome.accepted == 0 && outcome.gated == count(outcome)))
-        ++figures.failures;
+        ++figures.unused;
     }
     Eigen::Vector3d error = filter_.state().estimate(filter_.pose()) - truth;
     error[2] = wrap_angle(error[2]);
@@ -125,7 +125,7 @@ LocalizationFigures pooled(const std::vector<std::vector<std::unique_ptr<Localiz
     nees += one.nees;
     observations += one.observations;
     nees_count += one.nees_count;
-    all.failures += one.figures.failures;
+    all.unused += one.figures.unused;
     for (std::size_t k = 0; k < length; ++k)
       all.sigma_range[k] += one.figures.sigma_range[k] / static_cast<double>(drives.size());
   }

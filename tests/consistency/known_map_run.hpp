@@ -15,7 +15,7 @@ namespace libslam::test {
 struct LocalizationFigures {
   double rmse_position = 0.0;  ///< over all observations of all drives [m]
   double nees = 0.0;           ///< of the pose, mean; ideal 3
-  int failures = 0;            ///< corrections refused, or an unhealthy filter
+  int unused = 0;              ///< observations without a correction, or with an unhealthy filter
   /// Adapted sigma of the range [m], mean over the drives, by observation.
   std::vector<double> sigma_range;
 };

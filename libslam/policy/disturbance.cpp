@@ -84,8 +84,8 @@ double Disturbance::scale(const JointInnovation& joint) const {
   for (const double scale : kScales) {
     const double s2 = scale * scale;
     const Eigen::LLT<BlockMatrix> m(BlockMatrix::Identity(a.rows(), a.cols()) + s2 * a);
-    const BlockMatrix lower = m.matrixL();
-    const double cost = 2.0 * lower.diagonal().array().log().sum() - s2 * b.dot(m.solve(b));
+    const double log_det = 2.0 * m.matrixLLT().diagonal().array().log().sum();
+    const double cost = log_det - s2 * b.dot(m.solve(b));
     if (cost < least) {
       least = cost;
       best = scale;

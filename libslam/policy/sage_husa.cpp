@@ -203,7 +203,7 @@ std::vector<AdaptedNoise> SageHusa::noise() const {
       const auto row = static_cast<Index>(j);
       AdaptedNoise& noise = all.emplace_back();
       noise.name = components_[j].name;
-      if (channels_.size() > 1) noise.name += "_" + std::to_string(c + 1);
+      if (channels_.size() > 1) noise.name.append("_").append(std::to_string(c + 1));
       noise.sigma = std::sqrt(std::max(cov(row, row), 0.0));
       noise.configured = channel.reference.row(row).norm();
     }

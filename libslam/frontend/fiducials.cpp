@@ -54,6 +54,8 @@ void Fiducials::extract(const mrpt::obs::CSensoryFrame& frame, std::vector<Featu
         if (partner != right.end() && partner->id == tag.id)
           add_points(tag, *partner, pair.camera, batch);
       }
+      const int channel = channels_.of(observation->sensorLabel);
+      for (Feature& feature : batch) feature.channel = channel;
     } catch (const UnusableImages& defect) {
       ++unusable_;
       if (warnings_.size() < kMostWarnings) warnings_.emplace_back(defect.what());

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <libslam/config/parameters.hpp>
+#include <libslam/frontend/channel_numbers.hpp>
 #include <libslam/frontend/frontend.hpp>
 
 namespace libslam {
@@ -39,6 +40,7 @@ class Fiducials final : public Frontend {
   std::string sensor_label_;
   std::unique_ptr<StereoRectifier> rectifier_;
   std::unique_ptr<TagDetector> detector_;
+  ChannelNumbers channels_;
   std::int64_t unusable_ = 0;
   std::vector<std::string> warnings_;
 };

@@ -20,7 +20,7 @@ std::optional<Eigen::Vector3d> PointTracks::expect(const StereoCamera& camera,
 
 std::vector<bool> PointTracks::confirm(const StereoCamera& camera,
                                        const std::vector<Sighting>& sightings) {
-  std::vector<PointPair> pairs;
+  std::vector<SightingPair> pairs;
   pairs.reserve(sightings.size());
   for (const Sighting& sighting : sightings) {
     const PointTrack& track = tracks_[sighting.track];

@@ -12,9 +12,6 @@ namespace {
 
 using Observation = mrpt::obs::CObservationBearingRange;
 
-/// A log with a new label in every observation must not cost more and more.
-constexpr int kMostChannels = 100;
-
 Eigen::Matrix2d diagonal(double sigma_range, double sigma_bearing) {
   return Eigen::Vector2d(sigma_range * sigma_range, sigma_bearing * sigma_bearing).asDiagonal();
 }
@@ -47,15 +44,6 @@ RangeBearingObservation::RangeBearingObservation(const FrontendParameters& front
       with_identities_(with_identities),
       sensor_label_(std::move(sensor_label)) {}
 
-int RangeBearingObservation::channel_of(const std::string& label) {
-  const auto known = std::ranges::find(labels_, label);
-  const auto channel = static_cast<int>(known - labels_.begin());
-  if (known != labels_.end()) return channel;
-  if (channel == kMostChannels) return kMostChannels - 1;
-  labels_.push_back(label);
-  return channel;
-}
-
 void RangeBearingObservation::extract(const mrpt::obs::CSensoryFrame& frame,
                                       std::vector<FeatureBatch>& batches) {
   batches.clear();
@@ -64,7 +52,7 @@ void RangeBearingObservation::extract(const mrpt::obs::CSensoryFrame& frame,
     if (observation == nullptr) continue;
     if (!sensor_label_.empty() && observation->sensorLabel != sensor_label_) continue;
     const auto& on_robot = observation->sensorLocationOnRobot;
-    const int channel = channel_of(observation->sensorLabel);
+    const int channel = channels_.of(observation->sensorLabel);
     FeatureBatch batch;
     batch.reserve(observation->sensedData.size());
     for (const auto& measured : observation->sensedData) {

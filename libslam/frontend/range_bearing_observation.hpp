@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <libslam/config/parameters.hpp>
+#include <libslam/frontend/channel_numbers.hpp>
 #include <libslam/frontend/frontend.hpp>
 
 namespace libslam {
@@ -13,8 +14,7 @@ namespace libslam {
 /// Noise of a feature: covariance of the observation where the log has one (validCovariances), else
 /// the sensor sigmas of the log where positive, else the configured sigmas; `measurement.noise:
 /// configured` takes the configured ones always. Elevation is projected out: range * cos(pitch);
-/// the sensor's pose contributes x, y and yaw. Channels number the sensor labels by their first
-/// appearance; beyond a hundred, labels share the last channel.
+/// the sensor's pose contributes x, y and yaw.
 class RangeBearingObservation final : public Frontend {
  public:
   /// `with_identities` false: features carry none, whatever the log says.
@@ -25,13 +25,11 @@ class RangeBearingObservation final : public Frontend {
   std::int64_t unusable() const override { return unusable_; }
 
  private:
-  int channel_of(const std::string& label);
-
   FrontendParameters frontend_;
   MeasurementMatrix configured_;
   bool only_configured_, with_identities_;
   std::string sensor_label_;
-  std::vector<std::string> labels_;  ///< by channel
+  ChannelNumbers channels_;
   std::int64_t unusable_ = 0;
 };
 

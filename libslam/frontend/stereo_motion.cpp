@@ -46,7 +46,7 @@ struct Residual {
   Eigen::Matrix3d information;
 };
 
-bool linearize(const StereoCamera& camera, const Eigen::Isometry3d& T, const PointPair& pair,
+bool linearize(const StereoCamera& camera, const Eigen::Isometry3d& T, const SightingPair& pair,
                Residual& out) {
   out.p_after = T * pair.p_before;
   if (out.p_after.z() < kNearest) return false;
@@ -57,7 +57,7 @@ bool linearize(const StereoCamera& camera, const Eigen::Isometry3d& T, const Poi
   return true;
 }
 
-int count_support(const StereoCamera& camera, std::span<const PointPair> pairs,
+int count_support(const StereoCamera& camera, std::span<const SightingPair> pairs,
                   const Eigen::Isometry3d& T, double gate, std::vector<bool>& agrees) {
   agrees.assign(pairs.size(), false);
   int support = 0;
@@ -69,7 +69,7 @@ int count_support(const StereoCamera& camera, std::span<const PointPair> pairs,
 }
 
 /// Moves T to the minimum over the pairs that agree; returns the covariance of the motion.
-Matrix6 minimize(const StereoCamera& camera, std::span<const PointPair> pairs,
+Matrix6 minimize(const StereoCamera& camera, std::span<const SightingPair> pairs,
                  const std::vector<bool>& agrees, Eigen::Isometry3d& T,
                  int iterations = kIterations) {
   Matrix6 H;
@@ -98,12 +98,12 @@ Matrix6 minimize(const StereoCamera& camera, std::span<const PointPair> pairs,
 
 /// Absolute orientation of a triple, then a few steps to what its pixels say: depths are far
 /// noisier than directions.
-Eigen::Isometry3d orient(const StereoCamera& camera, std::span<const PointPair> pairs,
+Eigen::Isometry3d orient(const StereoCamera& camera, std::span<const SightingPair> pairs,
                          const std::array<std::size_t, 3>& triple) {
   Eigen::Matrix3d before, after;
-  std::array<PointPair, 3> chosen;
+  std::array<SightingPair, 3> chosen;
   for (int k = 0; k < 3; ++k) {
-    const PointPair& pair = chosen[static_cast<std::size_t>(k)] =
+    const SightingPair& pair = chosen[static_cast<std::size_t>(k)] =
         pairs[triple[static_cast<std::size_t>(k)]];
     before.col(k) = pair.p_before;
     after.col(k) = triangulate(camera, pair.z_after);
@@ -117,7 +117,7 @@ Eigen::Isometry3d orient(const StereoCamera& camera, std::span<const PointPair> 
 }  // namespace
 
 double disagreement(const StereoCamera& camera, const Eigen::Isometry3d& T_after_before,
-                    const PointPair& pair) {
+                    const SightingPair& pair) {
   Residual r;
   if (!linearize(camera, T_after_before, pair, r)) return std::numeric_limits<double>::infinity();
   return r.e.dot(r.information * r.e);
@@ -131,7 +131,7 @@ void locate(const StereoCamera& camera, const StereoMatch& point, Eigen::Vector3
 }
 
 std::optional<StereoMotion> estimate_stereo_motion(const StereoCamera& camera,
-                                                   std::span<const PointPair> pairs,
+                                                   std::span<const SightingPair> pairs,
                                                    const Eigen::Isometry3d& first_guess,
                                                    double gate, int least_support) {
   if (pairs.size() < static_cast<std::size_t>(std::max(least_support, 3))) return std::nullopt;

@@ -12,7 +12,7 @@
 namespace libslam {
 
 /// One point before and after the motion.
-struct PointPair {
+struct SightingPair {
   Eigen::Vector3d p_before = Eigen::Vector3d::Zero();       ///< camera frame before [m]
   Eigen::Matrix3d cov_before = Eigen::Matrix3d::Zero();     ///< of `p_before`
   Eigen::Vector3d z_after = Eigen::Vector3d::Zero();        ///< (u, v, d) [px]
@@ -28,7 +28,7 @@ struct StereoMotion {
 
 /// Squared Mahalanobis distance of a pair from a motion; infinite behind the camera.
 double disagreement(const StereoCamera& camera, const Eigen::Isometry3d& T_after_before,
-                    const PointPair& pair);
+                    const SightingPair& pair);
 
 /// Position and covariance of a stereo point.
 void locate(const StereoCamera& camera, const StereoMatch& point, Eigen::Vector3d& p,
@@ -41,7 +41,7 @@ void locate(const StereoCamera& camera, const StereoMatch& point, Eigen::Vector3
 /// too. `gate`: chi-square value of 3 degrees of freedom. Nothing where fewer than `least_support`
 /// pairs agree.
 std::optional<StereoMotion> estimate_stereo_motion(const StereoCamera& camera,
-                                                   std::span<const PointPair> pairs,
+                                                   std::span<const SightingPair> pairs,
                                                    const Eigen::Isometry3d& first_guess,
                                                    double gate, int least_support = 8);
 

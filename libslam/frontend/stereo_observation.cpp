@@ -82,7 +82,7 @@ std::shared_ptr<const StereoCamera> StereoObservation::share(const StereoCamera&
   return camera_;
 }
 
-void StereoObservation::add(const mrpt::obs::TStereoImageFeatures& point,
+void StereoObservation::add(const mrpt::obs::TStereoImageFeatures& point, int channel,
                             const std::shared_ptr<const StereoCamera>& camera,
                             FeatureBatch& batch) {
   const auto& [left, right] = point.pixels;
@@ -96,6 +96,7 @@ void StereoObservation::add(const mrpt::obs::TStereoImageFeatures& point,
   if (depth < min_range_ || depth > max_range_) return;
   Feature& feature = batch.emplace_back();
   feature.id = with_identities_ ? static_cast<std::int64_t>(point.ID) : kNoIdentity;
+  feature.channel = channel;
   feature.z = Eigen::Vector3d(left.x, v, d);
   feature.cov = cov_;
   feature.camera = camera;
@@ -114,9 +115,10 @@ void StereoObservation::extract(const mrpt::obs::CSensoryFrame& frame,
       continue;
     }
     const auto shared = share(*camera);
+    const int channel = channels_.of(observation->sensorLabel);
     FeatureBatch batch;
     batch.reserve(observation->theFeatures.size());
-    for (const auto& point : observation->theFeatures) add(point, shared, batch);
+    for (const auto& point : observation->theFeatures) add(point, channel, shared, batch);
     if (!batch.empty()) batches.push_back(std::move(batch));
   }
 }

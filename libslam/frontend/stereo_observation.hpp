@@ -9,6 +9,7 @@
 #include <mrpt/obs/CObservationStereoImagesFeatures.h>
 
 #include <libslam/config/parameters.hpp>
+#include <libslam/frontend/channel_numbers.hpp>
 #include <libslam/frontend/frontend.hpp>
 
 namespace libslam {
@@ -35,7 +36,7 @@ class StereoObservation final : public Frontend {
  private:
   /// The camera of an observation, shared by consecutive observations as long as it is the same.
   std::shared_ptr<const StereoCamera> share(const StereoCamera& camera);
-  void add(const mrpt::obs::TStereoImageFeatures& point,
+  void add(const mrpt::obs::TStereoImageFeatures& point, int channel,
            const std::shared_ptr<const StereoCamera>& camera, FeatureBatch& batch);
 
   double min_range_, max_range_;
@@ -44,6 +45,7 @@ class StereoObservation final : public Frontend {
   double weight_left_;  // of the left row in the mean
   MeasurementMatrix cov_;
   std::shared_ptr<const StereoCamera> camera_;
+  ChannelNumbers channels_;
   std::int64_t unusable_ = 0;
 };
 

@@ -18,6 +18,8 @@ using mrpt::img::TCamera;
 
 /// Larger images are not of a camera, but of somebody who wants our memory.
 constexpr int kLargestSide = 16384;
+/// Detectors work on images smaller by up to 8 and take their size for granted.
+constexpr int kSmallestSide = 64;
 /// Calibrations are printed with six digits or so.
 constexpr double kNegligible = 1e-6;
 
@@ -34,8 +36,10 @@ cv::Mat gray_of(const mrpt::img::CImage& image, const char* side) {
     throw UnusableImages(name_of(image, side) + ": cannot be read");
   }
   if (pixels.empty()) throw UnusableImages(name_of(image, side) + ": is empty");
-  if (std::max(pixels.rows, pixels.cols) > kLargestSide || pixels.depth() != CV_8U)
-    throw UnusableImages(name_of(image, side) + ": is no 8-bit image of at most 16384 x 16384");
+  if (std::max(pixels.rows, pixels.cols) > kLargestSide ||
+      std::min(pixels.rows, pixels.cols) < kSmallestSide || pixels.depth() != CV_8U)
+    throw UnusableImages(name_of(image, side) +
+                         ": is no 8-bit image from 64 x 64 to 16384 x 16384");
   if (pixels.channels() == 1) return pixels;
   cv::Mat gray;
   cv::cvtColor(pixels, gray, pixels.channels() == 3 ? cv::COLOR_BGR2GRAY : cv::COLOR_BGRA2GRAY);
@@ -137,6 +141,7 @@ void StereoRectifier::adopt_calibration(const Observation& o, cv::Size size) {
   if (camera_ && numbers == calibration_) return;
   require_calibration(numbers, o);
   const Eigen::Isometry3d T_left_right = isometry_of(o.rightCameraPose);
+  camera_.reset();  // until all of the new calibration is there
   rectified_ = is_rectified(o, T_left_right);
   if (rectified_) {
     const TCamera& c = o.leftCamera;

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 #include <stdexcept>
 
@@ -116,6 +117,8 @@ SavedMap surveyed_map(const std::vector<TrueLandmark>& landmarks, double sigma) 
   SavedMap map;
   if (!landmarks.empty()) map.dimension = static_cast<int>(landmarks.front().position.size());
   for (const TrueLandmark& surveyed : landmarks) {
+    if (surveyed.id == std::numeric_limits<std::int64_t>::max())
+      reject("landmark " + std::to_string(surveyed.id) + " leaves no number for those after it");
     SavedLandmark& landmark = map.landmarks.emplace_back();
     landmark.id = surveyed.id;
     landmark.mean = surveyed.position;

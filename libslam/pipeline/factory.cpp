@@ -142,8 +142,9 @@ EkfSlamParts make_filter_parts(const Parameters& p, const TrueState* truth) {
     parts.measurement = make_measurement(p);
     parts.associator = make_associator(p, *parts.measurement);
     parts.process = make_process_policy(p, *parts.measurement);
+    parts.disturbance = make_disturbance_response(p.policies.disturbance, parts.motion->pose_spec(),
+                                                  parts.measurement->landmark_spec());
   }
-  parts.disturbance = make_disturbance_response(p.policies.disturbance, parts.motion->pose_spec());
   parts.frame = make_error_frame(p.filter.error_frame);
   parts.linearization = make_linearization_point(p, truth);
   parts.noise = make_noise_policy(p);

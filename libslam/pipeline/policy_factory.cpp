@@ -60,7 +60,8 @@ std::unique_ptr<ProcessScale> make_process_policy(const Parameters& p,
 }
 
 std::optional<DisturbanceResponse> make_disturbance_response(const DisturbanceParameters& p,
-                                                             const BlockSpec& pose) {
+                                                             const BlockSpec& pose,
+                                                             const BlockSpec& landmark) {
   if (p.response == "none") return std::nullopt;
   DisturbanceOptions options;
   if (p.response == "additive")
@@ -80,7 +81,8 @@ std::optional<DisturbanceResponse> make_disturbance_response(const DisturbancePa
   ResponseOptions response;
   response.near_landmark = p.near_landmark;
   response.lost_after = p.lost_after;
-  response.relocalize = p.relocalize && pose.chart == Chart::kSE2;
+  response.relocalize =
+      p.relocalize && pose.chart == Chart::kSE2 && tangent_dimension(landmark) == 2;
   return DisturbanceResponse(Disturbance(options), response);
 }
 

@@ -15,7 +15,9 @@ namespace libslam {
 std::unique_ptr<NoisePolicy> make_noise_policy(const Parameters& p);
 std::unique_ptr<ProcessScale> make_process_policy(const Parameters& p,
                                                   const MeasurementModel& model);
+/// Relocalization is planar: `landmark` must be, too, or the robot is not searched for.
 std::optional<DisturbanceResponse> make_disturbance_response(const DisturbanceParameters& p,
-                                                             const BlockSpec& pose);
+                                                             const BlockSpec& pose,
+                                                             const BlockSpec& landmark);
 
 }  // namespace libslam

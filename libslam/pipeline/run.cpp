@@ -252,8 +252,8 @@ class Run {
     warnings.push_back(unused_sightings_ == 0
                            ? "no sighting passed the filters: this is odometry alone"
                            : std::to_string(unused_sightings_) +
-                                 " sightings, none used: where the log has no identities, set "
-                                 "association.method to nearest_neighbour");
+                                 " sightings, none used: check the start pose and the gate, and "
+                                 "association.method if log and map have no identities in common");
   }
 
   void fill_timing(RunSummary& summary) const {

@@ -54,21 +54,12 @@ void check_noise_adaptation(const Parameters& p, Conflicts& conflicts) {
                          "a map that is being made takes up a constant offset of its "
                          "measurements; only a known map tells the two apart"});
   }
-  if (p.measurement.model == "stereo_point" && p.measurement.stereo.landmark_dimension == 2) {
-    conflicts.push_back({{section + "method", "measurement.stereo.landmark_dimension"},
-                         "planar landmarks do not use the rows of the images, whose noise would "
-                         "stay unknown; take landmarks with 3 coordinates"});
-  }
   if (n.min_sigma_pixel >= n.max_sigma_pixel) {
     conflicts.push_back({{section + "min_sigma_pixel", section + "max_sigma_pixel"},
                          "no sigma lies between a floor and a ceiling in this order"});
   }
   if (n.min_sigma_range >= n.max_sigma_range) {
     conflicts.push_back({{section + "min_sigma_range", section + "max_sigma_range"},
-                         "no sigma lies between a floor and a ceiling in this order"});
-  }
-  if (n.min_sigma_pixel >= n.max_sigma_pixel) {
-    conflicts.push_back({{section + "min_sigma_pixel", section + "max_sigma_pixel"},
                          "no sigma lies between a floor and a ceiling in this order"});
   }
   if (n.min_sigma_bearing_deg >= n.max_sigma_bearing_deg) {
@@ -112,6 +103,12 @@ void check_disturbance(const Parameters& p, Conflicts& conflicts) {
     conflicts.push_back({{"policies.disturbance.relocalize", "filter.linearization"},
                          "a pose that is found anew has no history of points to linearize at; "
                          "take the estimate, or false"});
+  }
+  if (p.association.forget_after > 0) {
+    conflicts.push_back({{"policies.disturbance.response", "association.forget_after"},
+                         "in doubt no landmark is added, and those that are forgotten meanwhile "
+                         "leave nothing to find back with; policies.implied_input is the test for "
+                         "tracked points"});
   }
   if (d.trigger_probability >= 1.0 || d.release_probability >= 1.0) {
     conflicts.push_back(

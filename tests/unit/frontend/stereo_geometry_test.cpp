@@ -80,7 +80,7 @@ TEST(StereoMotion, JacobianFreeCheckOfTheEstimate) {
   const Eigen::Isometry3d T = Eigen::Translation3d(0.1, -0.05, -0.8) *
                               Eigen::AngleAxisd(0.04, Eigen::Vector3d(0.2, 1.0, -0.1).normalized());
   const auto pairs_with = [&](double noise, int wrong) {
-    std::vector<PointPair> pairs;
+    std::vector<SightingPair> pairs;
     for (int i = 0; i < 120; ++i) {
       const double depth = 4.0 + 16.0 * std::abs(unit(random));
       const Eigen::Vector3d p(0.5 * depth * unit(random), 0.4 * depth * unit(random), depth);
@@ -93,7 +93,7 @@ TEST(StereoMotion, JacobianFreeCheckOfTheEstimate) {
       before.z = project(camera, p) + disturb();
       after.z = project(camera, T * p) + disturb();
       if (i < wrong) after.z.head<2>() += Eigen::Vector2d(25.0 * unit(random), 40.0);
-      PointPair& pair = pairs.emplace_back();
+      SightingPair& pair = pairs.emplace_back();
       locate(camera, before, pair.p_before, pair.cov_before);
       pair.z_after = after.z;
       pair.cov_after = covariance_of(after);
@@ -126,10 +126,10 @@ TEST(StereoMotion, JacobianFreeCheckOfTheEstimate) {
 TEST(StereoMotion, NothingWithoutSupport) {
   const StereoCamera camera{500.0, 500.0, 320.0, 240.0,
                             0.3,   640,   480,   Eigen::Isometry3d::Identity()};
-  std::vector<PointPair> pairs(40);
+  std::vector<SightingPair> pairs(40);
   std::mt19937_64 random(9);
   std::uniform_real_distribution<double> unit;
-  for (PointPair& pair : pairs) {
+  for (SightingPair& pair : pairs) {
     StereoMatch match;
     match.sigma = 0.3;
     match.z = {640.0 * unit(random), 480.0 * unit(random), 5.0 + 60.0 * unit(random)};

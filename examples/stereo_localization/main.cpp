@@ -1,7 +1,7 @@
 // A head with a stereo camera finds where it is in a map of landmarks.
 //
 // usage:   stereo_localization MAP.csv [INI]
-// example: stereo_localization /tmp/landmarks.csv
+// example: stereo_localization landmarks.csv
 //
 // The head is simulated (simulated_head.hpp); with drivers in its place this is the whole program.
 // MAP.csv is written first, since a simulated world has no surveyor. INI may have a section

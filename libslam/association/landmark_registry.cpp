@@ -21,10 +21,11 @@ std::optional<std::size_t> LandmarkRegistry::find(std::int64_t id) const {
 }
 
 void LandmarkRegistry::add(BlockId block, std::int64_t id,
-                           std::shared_ptr<const Descriptor> appearance) {
+                           std::shared_ptr<const Descriptor> appearance,
+                           const std::optional<Extent>& extent) {
   if (id == kNoIdentity) id = next_number_++;
   by_id_[id] = landmarks_.size();
-  landmarks_.push_back({block, id, 1, 0, confirm_after_ <= 1, std::move(appearance), 0});
+  landmarks_.push_back({block, id, 1, 0, confirm_after_ <= 1, std::move(appearance), 0, extent});
 }
 
 void LandmarkRegistry::restore(const RegisteredLandmark& landmark) {
@@ -38,8 +39,13 @@ void LandmarkRegistry::number_from(std::int64_t number) {
 }
 
 void LandmarkRegistry::record_sighting(std::size_t landmark,
-                                       std::shared_ptr<const Descriptor> appearance) {
+                                       std::shared_ptr<const Descriptor> appearance,
+                                       const std::optional<Extent>& part) {
   auto& seen = landmarks_[landmark];
+  if (part && seen.extent)
+    seen.extent->include(*part);
+  else if (part)
+    seen.extent = part;
   if (appearance) seen.appearance = std::move(appearance);
   if (++seen.times_seen >= confirm_after_) seen.confirmed = true;
   seen.unseen = 0;
@@ -60,9 +66,29 @@ std::vector<BlockId> LandmarkRegistry::record_update() {
   if (gone.empty()) return gone;
   std::erase_if(landmarks_,
                 [this](const RegisteredLandmark& landmark) { return given_up(landmark); });
+  number_identities();
+  return gone;
+}
+
+BlockId LandmarkRegistry::merge(std::size_t kept, std::size_t gone,
+                                const std::optional<Extent>& part) {
+  RegisteredLandmark& to = landmarks_[kept];
+  const RegisteredLandmark& from = landmarks_[gone];
+  const BlockId block = from.block;
+  to.times_seen += from.times_seen;
+  to.updates = std::max(to.updates, from.updates);
+  to.unseen = std::min(to.unseen, from.unseen);
+  to.confirmed = to.confirmed || from.confirmed || to.times_seen >= confirm_after_;
+  to.prior_judged = to.prior_judged || from.prior_judged;
+  if (part && to.extent) to.extent->include(*part);
+  landmarks_.erase(landmarks_.begin() + static_cast<std::ptrdiff_t>(gone));
+  number_identities();
+  return block;
+}
+
+void LandmarkRegistry::number_identities() {
   by_id_.clear();
   for (std::size_t i = 0; i < landmarks_.size(); ++i) by_id_[landmarks_[i].id] = i;
-  return gone;
 }
 
 std::vector<BlockId> LandmarkRegistry::clear() {

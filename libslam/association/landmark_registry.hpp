@@ -20,7 +20,9 @@ struct RegisteredLandmark {
   int updates = 0;  ///< updates of the filter since the landmark was added
   bool confirmed = false;
   std::shared_ptr<const Descriptor> appearance = nullptr;  ///< as it was seen last; null: not known
-  int unseen = 0;  ///< updates of the filter since the last sighting
+  int unseen = 0;                               ///< updates of the filter since the last sighting
+  std::optional<Extent> extent = std::nullopt;  ///< of a line, all that was seen of it
+  bool prior_judged = false;  ///< the building prior has counted it, or found it oblique
 };
 
 /// A landmark starts provisional, is confirmed after `confirm_after` sightings and is given up when
@@ -38,7 +40,8 @@ class LandmarkRegistry {
   std::optional<std::size_t> find(std::int64_t id) const;
 
   /// Adds a landmark seen for the first time; without an identity it gets the next running number.
-  void add(BlockId block, std::int64_t id, std::shared_ptr<const Descriptor> appearance = nullptr);
+  void add(BlockId block, std::int64_t id, std::shared_ptr<const Descriptor> appearance = nullptr,
+           const std::optional<Extent>& extent = std::nullopt);
   /// Adds a landmark of an earlier run as it was. Throws std::invalid_argument if its identity is
   /// taken or none.
   void restore(const RegisteredLandmark& landmark);
@@ -46,9 +49,13 @@ class LandmarkRegistry {
   std::int64_t next_number() const { return next_number_; }
   /// Running numbers go on from `number` or beyond.
   void number_from(std::int64_t number);
-  /// A sighting without an appearance leaves the last one.
-  void record_sighting(std::size_t landmark,
-                       std::shared_ptr<const Descriptor> appearance = nullptr);
+  /// A sighting without an appearance leaves the last one; the extent grows by `part`.
+  void record_sighting(std::size_t landmark, std::shared_ptr<const Descriptor> appearance = nullptr,
+                       const std::optional<Extent>& part = std::nullopt);
+  void mark_prior_judged(std::size_t landmark) { landmarks_[landmark].prior_judged = true; }
+  /// Two landmarks are one: `kept` inherits the sightings of `gone` and the part that it covers,
+  /// `gone` is removed. Returns its block.
+  BlockId merge(std::size_t kept, std::size_t gone, const std::optional<Extent>& part);
   /// Counts one update of the filter; removes and returns the landmarks to give up.
   std::vector<BlockId> record_update();
   /// Removes and returns all landmarks.
@@ -56,6 +63,7 @@ class LandmarkRegistry {
 
  private:
   bool given_up(const RegisteredLandmark& landmark) const;
+  void number_identities();
 
   int confirm_after_, prune_after_, forget_after_;
   std::int64_t next_number_;

@@ -57,7 +57,7 @@ void require_mrpt_can(const Parameters& p) {
   const CalibrationParameters& c = p.calibration;
   for (const CalibrationParameter* parameter :
        {&c.scale_left, &c.scale_right, &c.track_width, &c.scale_speed, &c.scale_steering,
-        &c.bias_steering})
+        &c.bias_steering, &c.scale_turn, &c.bias_turn})
     if (parameter->enabled)
       throw ConfigError(
           "engine mrpt: it cannot calibrate; enable calibration in our variants only");

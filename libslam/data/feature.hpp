@@ -3,10 +3,12 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 
 #include <Eigen/Core>
 
 #include <libslam/data/descriptor.hpp>
+#include <libslam/data/extent.hpp>
 #include <libslam/data/stereo_camera.hpp>
 
 namespace libslam {
@@ -25,11 +27,13 @@ inline constexpr std::int64_t kNoIdentity = -1;
 struct Feature {
   std::int64_t id = kNoIdentity;  ///< identity from the sensor, or kNoIdentity
   int channel = 0;                ///< sensor it comes from: noise is adapted per channel
-  MeasurementVector z;            ///< range-bearing: range [m], bearing [rad]; stereo: u, v, d [px]
-  MeasurementMatrix cov;          ///< covariance of z
+  MeasurementVector z;    ///< range-bearing: range [m], bearing [rad]; stereo: u, v, d [px];
+                          ///< line: alpha [rad], r [m]
+  MeasurementMatrix cov;  ///< covariance of z
   Eigen::Vector3d T_robot_sensor = Eigen::Vector3d::Zero();  ///< x [m], y [m], phi [rad]
   std::shared_ptr<const StereoCamera> camera;                ///< of a stereo point, else null
   std::shared_ptr<const Descriptor> appearance;              ///< null: not known
+  std::optional<Extent> extent;  ///< of a line, in the frame of the sensor
 };
 
 }  // namespace libslam

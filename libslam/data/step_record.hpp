@@ -8,6 +8,7 @@
 
 #include <Eigen/Core>
 
+#include <libslam/data/extent.hpp>
 #include <libslam/data/spatial_pose.hpp>
 
 namespace libslam {
@@ -36,6 +37,7 @@ struct LandmarkEstimate {
   Eigen::VectorXd mean;        ///< world coordinates
   Eigen::MatrixXd cov;         ///< covariance of `mean`
   int times_seen = 0;
+  std::optional<Extent> extent = std::nullopt;  ///< of a line, all that was seen of it
 };
 
 /// One row of trajectory.csv. Covariances are in (x [m], y [m], phi [rad]) of the world frame.

@@ -61,6 +61,7 @@ EkfSlam::EkfSlam(EkfSlamParts parts)
       state_.add(pose, parts_.start.size() > 0 ? parts_.start : origin_of(pose), parts_.cov_start);
   linearizer_.add_block(state_, pose_);
   calibration_.add_to(state_, linearizer_);
+  if (parts_.building_prior) parts_.building_prior->add_to(state_);
   if (parts_.map) start_in_map();
 }
 
@@ -113,6 +114,8 @@ void EkfSlam::propagate(const MotionAction* action) {
   if (parts_.process) scale_process_noise();
   if (!calibration_.empty())
     calibration_.observe(state_, pose_, step_, action->dt, displacement_model());
+  if (parts_.delayed_poses)
+    parts_.delayed_poses->moved((step_.estimate - state_.estimate(pose_)).head<2>().norm());
   if (disturbed())
     parts_.disturbance->moved(state_.estimate(pose_), step_.estimate, step_.cov_noise);
   ekf_.propagate(state_, step_);
@@ -162,14 +165,15 @@ UpdateOutcome EkfSlam::update(std::span<const Feature> features) {
   if (parts_.implied_input) reject_impossible(features, outcome);
   correct(features, outcome);
   add_landmarks(features, outcome);
+  keep_up();
   return outcome;
 }
 
 AssociatedObservation EkfSlam::associate(std::span<const Feature> features) {
   const PhaseTimer timer(times_, Phase::kAssociate);
-  PairTest test(
-      {state_, pose_, ekf_, linearizer_, *parts_.measurement, parts_.registry, selected_pairs_},
-      features);
+  PairTest test({state_, pose_, ekf_, linearizer_, *parts_.measurement, parts_.registry,
+                 selected_pairs_, parts_.extent_gap},
+                features);
   parts_.associator->associate(features, parts_.registry, test, verdicts_);
   if (landmarks_given_)
     for (Verdict& verdict : verdicts_)
@@ -230,7 +234,9 @@ void EkfSlam::add_landmarks(std::span<const Feature> features, UpdateOutcome& ou
   const PhaseTimer timer(times_, Phase::kAugment);
   for (std::size_t i = 0; i < features.size(); ++i)
     if (verdicts_[i].outcome == Outcome::kPaired)
-      parts_.registry.record_sighting(verdicts_[i].landmark, features[i].appearance);
+      parts_.registry.record_sighting(
+          verdicts_[i].landmark, features[i].appearance,
+          sighted_part(parts_.registry.landmarks()[verdicts_[i].landmark].block, features[i]));
   for (std::size_t i = 0; i < features.size(); ++i) {
     if (verdicts_[i].outcome != Outcome::kNew) continue;
     if (!parts_.measurement->initializable(features[i])) {
@@ -242,13 +248,18 @@ void EkfSlam::add_landmarks(std::span<const Feature> features, UpdateOutcome& ou
     const BlockId block = state_.augment(parts_.measurement->landmark_spec(), initialization_);
     linearizer_.added(state_, pose_, block, features[i].id);
     verdicts_[i].landmark = parts_.registry.size();
-    parts_.registry.add(block, features[i].id, features[i].appearance);
+    parts_.registry.add(block, features[i].id, features[i].appearance,
+                        sighted_part(block, features[i]));
     ++outcome.new_landmarks;
   }
   outcome.verdicts = verdicts_;
   const std::vector<BlockId> given_up = parts_.registry.record_update();
   for (const BlockId block : given_up) state_.remove(block);
   if (landmarks_given_ && !given_up.empty()) give_landmarks(true);
+}
+
+std::optional<Extent> EkfSlam::sighted_part(BlockId landmark, const Feature& feature) const {
+  return parts_.measurement->sighted_part(state_, pose_, landmark, feature);
 }
 
 std::vector<AdaptedNoise> EkfSlam::noise() const {
@@ -262,8 +273,9 @@ std::vector<LandmarkEstimate> EkfSlam::landmarks(bool with_provisional) const {
   std::vector<LandmarkEstimate> map;
   for (const auto& landmark : parts_.registry.landmarks()) {
     if (!landmark.confirmed && !with_provisional) continue;
-    map.push_back({landmark.id, "point", state_.estimate(landmark.block),
-                   state_.covariance_of(landmark.block), landmark.times_seen});
+    map.push_back({landmark.id, std::string(parts_.measurement->landmark_type()),
+                   state_.estimate(landmark.block), state_.covariance_of(landmark.block),
+                   landmark.times_seen, landmark.extent});
   }
   std::sort(map.begin(), map.end(),
             [](const LandmarkEstimate& a, const LandmarkEstimate& b) { return a.id < b.id; });

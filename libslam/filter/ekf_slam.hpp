@@ -15,10 +15,13 @@
 #include <libslam/data/motion_action.hpp>
 #include <libslam/data/phase_times.hpp>
 #include <libslam/data/step_record.hpp>
+#include <libslam/filter/building_prior.hpp>
 #include <libslam/filter/calibration_states.hpp>
+#include <libslam/filter/delayed_poses.hpp>
 #include <libslam/filter/displacement_update.hpp>
 #include <libslam/filter/disturbance_response.hpp>
 #include <libslam/filter/ekf.hpp>
+#include <libslam/filter/landmark_merging.hpp>
 #include <libslam/filter/linearizer.hpp>
 #include <libslam/filter/map_start.hpp>
 #include <libslam/filter/selected_pairs.hpp>
@@ -44,7 +47,11 @@ struct EkfSlamParts {
   std::unique_ptr<ProcessScale> process;           ///< null: Q as the motion model says
   std::optional<DisturbanceResponse> disturbance;  ///< absent: every observation is believed
   std::optional<ImpliedInput> implied_input;       ///< absent: any motion is possible
+  double extent_gap = 0.0;  ///< farthest that two parts of one line lie apart [m]
   LandmarkRegistry registry{1, 0};
+  std::optional<LandmarkMerging> merging;       ///< absent: landmarks stay apart
+  std::optional<BuildingPrior> building_prior;  ///< absent: walls may run in any direction
+  std::optional<DelayedPoses> delayed_poses;    ///< absent: the past stays as it was
   std::optional<MapStart> map;  ///< to start in; needs no point of linearization but the estimate
   BlockVector start;  ///< start pose, storage of the motion model's pose; empty: the origin
   BlockMatrix cov_start = BlockMatrix::Zero(3, 3);        ///< of its error, tangent coordinates
@@ -84,6 +91,8 @@ class EkfSlam {
 
   const GaussianState& state() const { return state_; }
   BlockId pose() const { return pose_; }
+  /// Poses of the past in the state, the oldest first; empty without them.
+  std::span<const BlockId> delayed_poses() const;
   const LandmarkRegistry& registry() const { return parts_.registry; }
   const PhaseTimes& times() const { return times_; }
   PhaseTimes& times() { return times_; }
@@ -120,6 +129,8 @@ class EkfSlam {
   /// they are given.
   void reject_impossible(std::span<const Feature> features, UpdateOutcome& outcome);
   void correct(std::span<const Feature> features, UpdateOutcome& outcome);
+  std::optional<Extent> sighted_part(BlockId landmark, const Feature& feature) const;
+  void keep_up();
   void add_landmarks(std::span<const Feature> features, UpdateOutcome& outcome);
 
   EkfSlamParts parts_;

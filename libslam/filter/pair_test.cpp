@@ -11,6 +11,7 @@ std::optional<Match> PairTest::test(std::size_t feature, std::size_t landmark, d
   parts_.linearizer.linearize(parts_.measurement, parts_.state, parts_.pose, block,
                               features_[feature], measurement_);
   if (!measurement_.innovation.allFinite()) return std::nullopt;
+  if (apart_along(feature, parts_.registry.landmarks()[landmark])) return std::nullopt;
   const Innovation innovation = parts_.ekf.innovate(parts_.state, measurement_);
   return Match{innovation.mahalanobis2, innovation.log_det};
 }
@@ -24,6 +25,14 @@ void PairTest::select(std::span<const Pairing> pairs) {
     parts_.selected.add(measurement_);
   }
   parts_.selected.finish(parts_.state);
+}
+
+/// Two parts of one straight line that lie apart are two walls.
+bool PairTest::apart_along(std::size_t feature, const RegisteredLandmark& landmark) const {
+  if (!landmark.extent) return false;
+  const auto part = parts_.measurement.sighted_part(parts_.state, parts_.pose, landmark.block,
+                                                    features_[feature]);
+  return part && part->gap_to(*landmark.extent) > parts_.extent_gap;
 }
 
 // In landmark space e = l_feature - l_map has covariance C <= 2 (C_feature + C_map), whatever

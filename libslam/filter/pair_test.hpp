@@ -24,6 +24,7 @@ struct PairTestParts {
   const MeasurementModel& measurement;
   const LandmarkRegistry& registry;
   SelectedPairs& selected;  ///< memory of the joint test
+  double extent_gap;        ///< farthest that two parts of one line lie apart [m]
 };
 
 /// Innovations of the pairs of one observation, with a cheap bound that skips pairs far apart.
@@ -45,6 +46,7 @@ class PairTest final : public Compatibility {
   }
 
  private:
+  bool apart_along(std::size_t feature, const RegisteredLandmark& landmark) const;
   bool far_apart(std::size_t feature, BlockId landmark, double limit);
 
   PairTestParts parts_;

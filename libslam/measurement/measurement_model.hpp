@@ -8,11 +8,20 @@
 //         `initialize` returns the landmark that explains an `initializable` feature exactly, with
 //         derivatives.
 
+#include <optional>
+#include <string_view>
+
 #include <libslam/data/feature.hpp>
 #include <libslam/state/gaussian_state.hpp>
 #include <libslam/state/linearization.hpp>
 
 namespace libslam {
+
+/// A landmark with all that was seen of it, in its own frame.
+struct LandmarkPart {
+  BlockId block;
+  Extent extent;
+};
 
 class MeasurementModel {
  public:
@@ -20,6 +29,8 @@ class MeasurementModel {
 
   /// The block a landmark of this model occupies (its name is filled in by the caller).
   virtual BlockSpec landmark_spec() const = 0;
+  /// What map.csv calls such a landmark.
+  virtual std::string_view landmark_type() const { return "point"; }
   /// h(x): the measurement that the estimates predict, for the sensor of `feature`.
   virtual MeasurementVector predict(const GaussianState& state, BlockId pose, BlockId landmark,
                                     const Feature& feature) const = 0;
@@ -32,6 +43,27 @@ class MeasurementModel {
   virtual bool bounded_in_map() const { return true; }
   virtual void initialize(const GaussianState& state, BlockId pose, const Feature& feature,
                           Initialization& out) const = 0;
+  /// Which part of a landmark with an extent the feature would show, if it is a sighting of it.
+  /// Nothing where landmarks have none.
+  virtual std::optional<Extent> sighted_part(const GaussianState&, BlockId /*pose*/,
+                                             BlockId /*landmark*/, const Feature&) const {
+    return std::nullopt;
+  }
+
+  // For models whose landmarks may turn out to be one.
+
+  /// a - b as a measurement of zero, if both may be one landmark; false if they certainly are two,
+  /// or of a model that does not merge. `extent_gap`: farthest that parts of one lie apart [m].
+  virtual bool difference(const GaussianState&, const LandmarkPart& /*a*/,
+                          const LandmarkPart& /*b*/, double /*extent_gap*/,
+                          LinearizedMeasurement& /*out*/) const {
+    return false;
+  }
+  /// The extent of `part`, told along another landmark.
+  virtual std::optional<Extent> part_along(const GaussianState&, BlockId /*landmark*/,
+                                           const LandmarkPart& /*part*/) const {
+    return std::nullopt;
+  }
 };
 
 }  // namespace libslam

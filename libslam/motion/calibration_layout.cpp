@@ -22,6 +22,8 @@ constexpr std::array<Entry, kCalibrationCount> kEntries{{
     {"scale_speed", &CalibrationParameters::scale_speed},
     {"scale_steering", &CalibrationParameters::scale_steering},
     {"bias_steering", &CalibrationParameters::bias_steering},
+    {"scale_turn", &CalibrationParameters::scale_turn},
+    {"bias_turn", &CalibrationParameters::bias_turn},
 }};
 
 }  // namespace

@@ -20,6 +20,8 @@ enum CalibrationIndex : Eigen::Index {
   kScaleSpeed,     ///< true speed per nominal speed [1]
   kScaleSteering,  ///< true steering angle per nominal angle [1]
   kBiasSteering,   ///< added to the scaled steering angle [rad]
+  kScaleTurn,      ///< true turn per turn of the odometry [1]
+  kBiasTurn,       ///< turn per metre that the odometry does not see [rad/m]
   kCalibrationCount
 };
 

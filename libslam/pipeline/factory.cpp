@@ -8,12 +8,15 @@
 #include <libslam/association/joint_compatibility.hpp>
 #include <libslam/association/known.hpp>
 #include <libslam/association/nearest_neighbour.hpp>
+#include <libslam/association/sequential_compatibility.hpp>
 #include <libslam/frontend/fiducials.hpp>
 #include <libslam/frontend/range_bearing_observation.hpp>
+#include <libslam/frontend/scan_lines.hpp>
 #include <libslam/frontend/sensor_path_observation.hpp>
 #include <libslam/frontend/stereo_features.hpp>
 #include <libslam/frontend/stereo_observation.hpp>
 #include <libslam/io/map_file.hpp>
+#include <libslam/measurement/line.hpp>
 #include <libslam/measurement/range_bearing.hpp>
 #include <libslam/measurement/sensor_displacement.hpp>
 #include <libslam/measurement/stereo_point.hpp>
@@ -40,6 +43,9 @@ constexpr std::int64_t kBeyondIdentities = std::int64_t{1} << 32;
 
 std::unique_ptr<MeasurementModel> make_measurement(const Parameters& p) {
   if (p.measurement.model == "range_bearing") return std::make_unique<RangeBearing>();
+  if (p.measurement.model == "line")
+    return std::make_unique<LineMeasurement>(
+        LineTolerance{p.frontend.lines.floor_alpha_deg * kPi / 180.0, p.frontend.lines.floor_r});
   if (p.measurement.model == "stereo_point")
     return std::make_unique<StereoPoint>(p.measurement.stereo.landmark_dimension);
   throw_unknown("measurement model", p.measurement.model);
@@ -63,6 +69,9 @@ std::unique_ptr<Associator> make_associator(const Parameters& p, const Measureme
   if (p.association.method == "known") return std::make_unique<KnownAssociation>(gate);
   if (p.association.method == "nearest_neighbour") return nearest();
   if (p.association.method == "joint_compatibility") return joint();
+  if (p.association.method == "sequential_compatibility")
+    return std::make_unique<SequentialCompatibility>(
+        gate, chi_square_quantile(p.association.new_landmark_probability, dof));
   if (p.association.method == "known_or_nearest")
     return std::make_unique<KnownAssociation>(all, nearest());
   if (p.association.method == "known_or_joint")
@@ -132,6 +141,25 @@ std::unique_ptr<MotionModel> make_motion_model(const MotionParameters& motion,
   throw_unknown("motion model", motion.model);
 }
 
+namespace {
+
+/// What is done about the map and the past beside corrections.
+void add_upkeep(const Parameters& p, EkfSlamParts& parts) {
+  if (p.association.merge_every > 0)
+    parts.merging.emplace(MergingOptions{p.association.merge_every,
+                                         chi_square_quantile(p.association.merge_probability, 2),
+                                         p.association.extent_gap});
+  const BuildingPriorParameters& prior = p.filter.building_prior;
+  if (prior.enabled)
+    parts.building_prior.emplace(BuildingPriorOptions{prior.sigma_deg * kPi / 180.0,
+                                                      prior.min_sightings, prior.min_length,
+                                                      chi_square_quantile(prior.probability, 1)});
+  if (p.filter.delayed_pose_spacing > 0.0)
+    parts.delayed_poses.emplace(p.filter.delayed_pose_spacing);
+}
+
+}  // namespace
+
 EkfSlamParts make_filter_parts(const Parameters& p, const TrueState* truth) {
   EkfSlamParts parts;
   parts.motion = make_motion_model(p.motion, p.calibration, p.input);
@@ -148,6 +176,8 @@ EkfSlamParts make_filter_parts(const Parameters& p, const TrueState* truth) {
   parts.frame = make_error_frame(p.filter.error_frame);
   parts.linearization = make_linearization_point(p, truth);
   parts.noise = make_noise_policy(p);
+  parts.extent_gap = p.association.extent_gap;
+  add_upkeep(p, parts);
   parts.registry = LandmarkRegistry(
       p.association.confirm_after, p.association.prune_after,
       p.association.uses_identities() && p.association.method != "known" ? kBeyondIdentities : 0,
@@ -176,6 +206,8 @@ std::unique_ptr<Frontend> make_frontend(const Parameters& p) {
   if (p.frontend.source == "stereo_images")
     return std::make_unique<StereoFeatures>(p.frontend, p.input.sensor_label,
                                             p.association.uses_identities());
+  if (p.frontend.source == "scan_lines")
+    return std::make_unique<ScanLines>(p.frontend, p.input.sensor_label);
   if (p.frontend.source == "fiducials")
     return std::make_unique<Fiducials>(p.frontend, p.input.sensor_label);
   throw_unknown("front-end", p.frontend.source);

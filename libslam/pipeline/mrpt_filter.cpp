@@ -22,7 +22,8 @@ using mrpt::obs::CObservationBearingRange;
 CalibrationParameters constants_of(CalibrationParameters calibration) {
   for (CalibrationParameter* parameter :
        {&calibration.scale_left, &calibration.scale_right, &calibration.track_width,
-        &calibration.scale_speed, &calibration.scale_steering, &calibration.bias_steering})
+        &calibration.scale_speed, &calibration.scale_steering, &calibration.bias_steering,
+        &calibration.scale_turn, &calibration.bias_turn})
     parameter->enabled = false;
   return calibration;
 }

@@ -31,6 +31,8 @@ int tangent_dimension(const BlockSpec& spec) {
       return 1;
     case Chart::kSE2:
       return 3;
+    case Chart::kLine:
+      return 2;
     case Chart::kSE3:
       return 6;
   }
@@ -53,6 +55,10 @@ void boxplus(const BlockSpec& spec, Eigen::Ref<Eigen::VectorXd> x, const VectorR
       x.head<2>() += d.head<2>();
       x[2] = wrap_angle(x[2] + d[2]);
       return;
+    case Chart::kLine:
+      x[0] = wrap_angle(x[0] + d[0]);
+      x[1] += d[1];
+      return;
     case Chart::kSE3:
       x.head<3>() += d.head<3>();
       x.tail<4>() = (so3_exp(d.tail<3>()) * rotation_of(x)).normalized().coeffs();
@@ -72,6 +78,10 @@ TangentVector boxminus(const BlockSpec& spec, const VectorRef& a, const VectorRe
     case Chart::kSE2:
       d = a - b;
       d[2] = wrap_angle(d[2]);
+      break;
+    case Chart::kLine:
+      d = a - b;
+      d[0] = wrap_angle(d[0]);
       break;
     case Chart::kSE3:
       d.resize(6);

@@ -9,6 +9,7 @@
 // | vector | n numbers                    | n                | x + d                             |
 // | angle  | phi                          | 1                | wrap(phi + d)                     |
 // | SE2    | x, y, phi                    | dx, dy, dphi     | additive in the world, phi wrapped|
+// | line   | alpha, r                     | dalpha, dr       | additive, alpha wrapped           |
 // | SE3    | x, y, z, qx, qy, qz, qw      | dp, dtheta (3+3) | p + dp, Exp(dtheta) R (world)     |
 
 #include <compare>
@@ -18,13 +19,14 @@
 
 namespace libslam {
 
-enum class Chart { kVector, kAngle, kSE2, kSE3 };
+enum class Chart { kVector, kAngle, kSE2, kLine, kSE3 };
 
 /// What a change of the world frame does to a block. The right-invariant error frame needs to know.
 enum class WorldRole {
   kNone,   ///< calibration, biases: not expressed in the world
   kPoint,  ///< coordinates of a point in the world (dimension 2 or 3)
   kPose,   ///< a pose in the world
+  kLine,   ///< an oriented line in the plane of the world: normal at alpha [rad], n^T p = r [m]
 };
 
 /// Largest tangent and storage dimension of one block.

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -42,10 +43,21 @@ void add_to_block(const GaussianState::MutableBlock& block, const VectorRef& del
 }
 
 /// A point without a correction: its xi takes back the turn about the origin, exactly, and the
-/// exponential leaves it where it is.
+/// exponential leaves it where it is. A line, too: it turns back about its own point and slides
+/// along itself.
 bool stays(const GaussianState::MutableBlock& block, const VectorRef& delta) {
-  return block.spec.role == WorldRole::kPoint &&
+  const WorldRole role = block.spec.role;
+  return (role == WorldRole::kPoint || role == WorldRole::kLine) &&
          delta.segment(block.offset, block.size).isZero(0.0);
+}
+
+bool has_lines(const GaussianState& state) {
+  return std::ranges::any_of(
+      state.blocks(), [&](BlockId block) { return state.spec(block).role == WorldRole::kLine; });
+}
+
+Eigen::Vector2d direction(double angle) {
+  return {std::cos(angle), std::sin(angle)};
 }
 
 }  // namespace
@@ -61,10 +73,11 @@ void RightInvariantFrame::require_supported(const BlockSpec& spec) const {
                      (spec.size == 2 || spec.size == 3);
   const bool pose =
       spec.role == WorldRole::kPose && (spec.chart == Chart::kSE2 || spec.chart == Chart::kSE3);
-  if (spec.role == WorldRole::kNone || point || pose) return;
+  const bool line = spec.role == WorldRole::kLine && spec.chart == Chart::kLine;
+  if (spec.role == WorldRole::kNone || point || pose || line) return;
   throw std::invalid_argument("block '" + spec.name +
                               "': the right-invariant error frame is derived for SE(2) and SE(3) "
-                              "poses and for points only");
+                              "poses, for points and for planar lines only");
 }
 
 ChartChange RightInvariantFrame::retract(GaussianState& state, BlockId pose,
@@ -84,10 +97,13 @@ Eigen::Map<Eigen::MatrixXd> RightInvariantFrame::cleared(Eigen::Index dimension,
 
 ChartChange RightInvariantFrame::retract_planar(GaussianState& state, BlockId pose,
                                                 const VectorRef& delta) {
-  const Eigen::Index heading = state.offset(pose) + 2;
-  const double turn = delta[heading];
+  // Without lines the change of chart has the column of the heading alone.
+  const Eigen::Index first = state.offset(pose), columns = has_lines(state) ? 3 : 1;
+  const double turn = delta[first + 2];
   const PlanarExponential exponential(turn);
-  auto u = cleared(state.dimension(), 1);
+  const Eigen::Vector2d p = state.estimate(pose).head<2>();
+  const Eigen::Vector2d shift = delta.segment<2>(first) - rotated_90(p) * turn;  // xi_p
+  auto u = cleared(state.dimension(), columns);
   for (const BlockId id : state.blocks()) {
     GaussianState::MutableBlock block = state.mutable_block(id);
     const WorldRole role = block.spec.role;
@@ -97,15 +113,25 @@ ChartChange RightInvariantFrame::retract_planar(GaussianState& state, BlockId po
     }
     auto& x = block.estimate;
     if (stays(block, delta)) continue;
+    if (role == WorldRole::kLine) {
+      const Eigen::Vector2d before = direction(x[0]);
+      x[0] = wrap_angle(x[0] + delta[block.offset]);
+      const Eigen::Vector2d after = direction(x[0]);
+      x[1] += delta[block.offset + 1] - before.dot(shift) +
+              after.dot(exponential(Eigen::Vector2d::Zero(), shift));
+      const Eigen::Vector2d change = after - before;
+      u.row(block.offset + 1) << change.transpose(), -change.dot(rotated_90(p));
+      continue;
+    }
     const Eigen::Vector2d before = x.head<2>();
     const Eigen::Vector2d xi = delta.segment<2>(block.offset) - rotated_90(before) * turn;
     const Eigen::Vector2d after = exponential(before, xi);
     x.head<2>() = after;
     if (block.size == 3) x[2] += delta[block.offset + 2];
     if (role == WorldRole::kPose) x[2] = wrap_angle(x[2]);
-    u.col(0).segment<2>(block.offset) = rotated_90(after - before);
+    u.col(columns - 1).segment<2>(block.offset) = rotated_90(after - before);
   }
-  return {heading, {moved_.data(), state.dimension(), 1}};
+  return {first + 3 - columns, {moved_.data(), state.dimension(), columns}};
 }
 
 ChartChange RightInvariantFrame::retract_spatial(GaussianState& state, BlockId pose,

@@ -52,11 +52,14 @@ class StandardFrame final : public ErrorFrame {
 /// arXiv:1510.06263). A planar pose turns points in space about the vertical and leaves their
 /// heights alone. A delayed pose takes part as a point with an orientation of its own, whose error
 /// stays additive: a turn of the world changes it by the same rotation everywhere, so the
-/// directions stay constant.
+/// directions stay constant. A line n(alpha)^T p = r is turned and shifted with the world,
+///     xi_alpha = delta_alpha,  xi_r = delta_r - n(alpha)^T xi_p,
+/// a shift of the world moves xi_p alone then, and a turn xi_theta and every xi_alpha by the same.
 class RightInvariantFrame final : public ErrorFrame {
  public:
   std::string_view name() const override { return "right_invariant"; }
-  /// Supported: SE2 and SE3 poses, points in the plane and in space, blocks without a world role.
+  /// Supported: SE2 and SE3 poses, points in the plane and in space, lines in the plane, blocks
+  /// without a world role.
   void require_supported(const BlockSpec& spec) const override;
   /// Throws std::invalid_argument where a pose in space meets a planar block.
   ChartChange retract(GaussianState& state, BlockId pose, const VectorRef& delta) override;
@@ -67,7 +70,8 @@ class RightInvariantFrame final : public ErrorFrame {
   /// A zero matrix of `columns` columns over the whole state, in the workspace.
   Eigen::Map<Eigen::MatrixXd> cleared(Eigen::Index dimension, Eigen::Index columns);
 
-  Eigen::VectorXd moved_;  // U: J (p+ - p-), or -[p+ - p-], of every world position, stacked
+  // U, stacked: J (p+ - p-), or -[p+ - p-], of every world position; (n+ - n-)^T [I, -J p-] of r.
+  Eigen::VectorXd moved_;
 };
 
 /// "standard" or "right_invariant"; throws std::invalid_argument otherwise.

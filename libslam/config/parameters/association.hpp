@@ -15,13 +15,16 @@ struct AssociationParameters {
   int confirm_after = 1;
   int prune_after = 0;
   int forget_after = 0;
+  double extent_gap = 0.6;
+  int merge_every = 0;
+  double merge_probability = 0.99;
   double appearance_distance = 0.3;
   double appearance_ratio = 0.8;
 
   /// False: the identities of the log are not even looked at.
   bool uses_identities() const {
     return method != "nearest_neighbour" && method != "joint_compatibility" &&
-           method != "appearance";
+           method != "sequential_compatibility" && method != "appearance";
   }
 
   void describe(auto& v) {
@@ -30,13 +33,15 @@ struct AssociationParameters {
              "known: identities of the log; nearest_neighbour: identities are ignored; "
              "joint_compatibility: likewise, and the observations of a frame are paired together "
              "(JCBB), which holds with a pose that is off by more than landmarks are apart; "
+             "sequential_compatibility: likewise, one after the other in the order of the "
+             "front-end, each given those before it; "
              "known_or_nearest, known_or_joint: identities of the log without a gate, one of the "
              "two for observations that have none; appearance: image features by their "
              "descriptors, then by the gate.",
              0,
              0,
-             {"known", "nearest_neighbour", "joint_compatibility", "known_or_nearest",
-              "known_or_joint", "appearance"}});
+             {"known", "nearest_neighbour", "joint_compatibility", "sequential_compatibility",
+              "known_or_nearest", "known_or_joint", "appearance"}});
     v.value("gate_probability", gate_probability,
             {"1",
              "An observation is accepted as a sighting of a landmark if its squared Mahalanobis "
@@ -59,6 +64,19 @@ struct AssociationParameters {
          "Any landmark that is not seen in so many updates in a row is removed, a confirmed one "
          "too; 0: never. For odometry from tracked points, whose identities never come back.",
          0});
+    v.value("extent_gap", extent_gap,
+            {"m",
+             "A line is another wall if, along it, it begins farther than this from all that was "
+             "seen of the landmark.",
+             0});
+    v.value("merge_every", merge_every,
+            {"1", "Lines of the map that agree are made one after every so many updates; 0: never.",
+             0});
+    v.value("merge_probability", merge_probability,
+            {"1",
+             "Two lines agree if the squared Mahalanobis distance between them is below this "
+             "chi-square probability.",
+             1e-6, 1});
     v.value("appearance_distance", appearance_distance,
             {"1",
              "Largest distance of two descriptors of one landmark: share of the bits, or of the "

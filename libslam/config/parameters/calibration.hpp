@@ -22,13 +22,16 @@ struct CalibrationParameter {
   }
 };
 
-/// Section `calibration`: odometry parameters, gyro biases [rad/s], and the pose (x, y [m], phi
-/// [rad]) of a sensor that measures displacements, as state.
+/// Section `calibration`: odometry parameters (bias_turn: turn per metre driven [rad/m]), gyro
+/// biases [rad/s], and the pose (x, y [m], phi [rad]) of a sensor that measures displacements, as
+/// state.
 struct CalibrationParameters {
   CalibrationParameter scale_left, scale_right;
   CalibrationParameter track_width{false, 1.0, 0.1, 0.0};
   CalibrationParameter scale_speed, scale_steering;
   CalibrationParameter bias_steering{false, 0.0, 0.02, 0.0};
+  CalibrationParameter scale_turn;
+  CalibrationParameter bias_turn{false, 0.0, 0.1, 0.0};
   CalibrationParameter bias_gyro_x{false, 0.0, 0.01, 0.0}, bias_gyro_y{false, 0.0, 0.01, 0.0};
   CalibrationParameter bias_gyro_z{false, 0.0, 0.01, 0.0};
   CalibrationParameter sensor_x{false, 0.0, 0.05, 0.0}, sensor_y{false, 0.0, 0.05, 0.0};
@@ -41,6 +44,8 @@ struct CalibrationParameters {
     v.section("scale_speed", scale_speed);
     v.section("scale_steering", scale_steering);
     v.section("bias_steering", bias_steering);
+    v.section("scale_turn", scale_turn);
+    v.section("bias_turn", bias_turn);
     v.section("bias_gyro_x", bias_gyro_x);
     v.section("bias_gyro_y", bias_gyro_y);
     v.section("bias_gyro_z", bias_gyro_z);

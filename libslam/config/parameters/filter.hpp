@@ -7,12 +7,36 @@
 
 namespace libslam {
 
+/// Section `filter.building_prior`.
+struct BuildingPriorParameters {
+  bool enabled = false;
+  double sigma_deg = 3.0;
+  int min_sightings = 4;
+  double min_length = 1.2;
+  double probability = 0.99;
+
+  void describe(auto& v) {
+    v.value("enabled", enabled,
+            {"",
+             "Estimate the main direction of the walls, and tell every line once that it is "
+             "probably parallel or at right angles to it."});
+    v.value("sigma_deg", sigma_deg,
+            {"deg", "Standard deviation of a wall from the main directions.", 1e-3, 45});
+    v.value("min_sightings", min_sightings, {"1", "Sightings of a line before it is told.", 1});
+    v.value("min_length", min_length, {"m", "Length of a line before it is told.", 0});
+    v.value("probability", probability,
+            {"1", "A line beyond this chi-square probability is oblique and left alone.", 1e-6, 1});
+  }
+};
+
 /// Section `filter`.
 struct FilterParameters {
   std::string error_frame = "right_invariant";
   std::string linearization = "estimate";
   double initial_sigma_xy = 0.0;
   double initial_sigma_heading_deg = 0.0;
+  double delayed_pose_spacing = 0.0;
+  BuildingPriorParameters building_prior;
 
   void describe(auto& v) {
     v.value("error_frame", error_frame,
@@ -29,6 +53,12 @@ struct FilterParameters {
             {"m", "Standard deviation of the start position.", 0});
     v.value("initial_sigma_heading_deg", initial_sigma_heading_deg,
             {"deg", "Standard deviation of the start heading.", 0});
+    v.value("delayed_pose_spacing", delayed_pose_spacing,
+            {"m",
+             "Distance after which the pose is kept in the state, so that later corrections move "
+             "the path behind the robot, too (trajectory_smoothed.tum); 0: never.",
+             0});
+    v.section("building_prior", building_prior);
   }
 };
 

@@ -4,6 +4,7 @@
 #include <string>
 
 #include <libslam/config/description.hpp>
+#include <libslam/config/parameters/scan_lines.hpp>
 #include <libslam/config/parameters/stereo.hpp>
 #include <libslam/config/parameters/stereo_noise.hpp>
 
@@ -14,6 +15,7 @@ struct FrontendParameters {
   std::string source = "range_bearing";
   double min_range = 0.0;
   double max_range = 1e6;
+  ScanLinesParameters lines;
   StereoFrontendParameters stereo;
   FiducialParameters fiducials;
 
@@ -22,13 +24,16 @@ struct FrontendParameters {
             {"",
              "Where features come from: range-bearing observations, the path that a sensor reports "
              "of itself (odometry observations labelled input.sensor_label), logged points of a "
-             "stereo camera, points of its images, or tags in its images.",
+             "stereo camera, points of its images, tags in its images, or straight lines in the "
+             "scans of a laser.",
              0,
              0,
-             {"range_bearing", "sensor_path", "stereo_points", "stereo_images", "fiducials"}});
+             {"range_bearing", "sensor_path", "stereo_points", "stereo_images", "fiducials",
+              "scan_lines"}});
     v.value("min_range", min_range,
             {"m", "Nearer observations are ignored; of stereo points by their depth.", 0});
     v.value("max_range", max_range, {"m", "Farther observations are ignored.", 0});
+    v.section("lines", lines);
     v.section("stereo", stereo);
     v.section("fiducials", fiducials);
   }
@@ -48,11 +53,11 @@ struct MeasurementParameters {
     v.value(
         "model", model,
         {"",
-         "Measurement model: of landmarks by range and bearing or as points of a stereo camera, "
-         "or of the displacement of a sensor (no map).",
+         "Measurement model: of landmarks by range and bearing, as points of a stereo camera or as "
+         "straight lines, or of the displacement of a sensor (no map).",
          0,
          0,
-         {"range_bearing", "stereo_point", "sensor_displacement"}});
+         {"range_bearing", "stereo_point", "line", "sensor_displacement"}});
     v.value(
         "noise", noise,
         {"",

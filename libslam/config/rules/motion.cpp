@@ -12,19 +12,21 @@ struct CalibrationEntry {
   const char* name;
   const CalibrationParameter& parameter;
   bool is_scale;
-  bool of_differential, of_ackermann, of_twist;  ///< the motion model has this parameter
+  bool of_increment, of_differential, of_ackermann, of_twist;  ///< the motion model has it
 };
 
-std::array<CalibrationEntry, 9> list_calibration(const CalibrationParameters& c) {
-  return {{{"scale_left", c.scale_left, true, true, true, false},
-           {"scale_right", c.scale_right, true, true, true, false},
-           {"track_width", c.track_width, true, true, false, false},
-           {"scale_speed", c.scale_speed, true, false, true, true},
-           {"scale_steering", c.scale_steering, true, false, true, false},
-           {"bias_steering", c.bias_steering, false, false, true, false},
-           {"bias_gyro_x", c.bias_gyro_x, false, false, false, true},
-           {"bias_gyro_y", c.bias_gyro_y, false, false, false, true},
-           {"bias_gyro_z", c.bias_gyro_z, false, false, false, true}}};
+std::array<CalibrationEntry, 11> list_calibration(const CalibrationParameters& c) {
+  return {{{"scale_left", c.scale_left, true, false, true, true, false},
+           {"scale_right", c.scale_right, true, false, true, true, false},
+           {"track_width", c.track_width, true, false, true, true, false},
+           {"scale_speed", c.scale_speed, true, true, false, true, true},
+           {"scale_steering", c.scale_steering, true, false, false, true, false},
+           {"bias_steering", c.bias_steering, false, false, false, true, false},
+           {"scale_turn", c.scale_turn, true, true, false, false, false},
+           {"bias_turn", c.bias_turn, false, true, false, false, false},
+           {"bias_gyro_x", c.bias_gyro_x, false, false, false, false, true},
+           {"bias_gyro_y", c.bias_gyro_y, false, false, false, false, true},
+           {"bias_gyro_z", c.bias_gyro_z, false, false, false, false, true}}};
 }
 
 void check_no_odometry(const Parameters& p, Conflicts& conflicts) {
@@ -79,7 +81,8 @@ void check_calibration(const Parameters& p, Conflicts& conflicts) {
   for (const CalibrationEntry& entry : list_calibration(p.calibration)) {
     const std::string section = std::string("calibration.") + entry.name;
     const CalibrationParameter& c = entry.parameter;
-    const bool is_observable = (model == "differential" && entry.of_differential) ||
+    const bool is_observable = (model == "odometry_increment" && entry.of_increment) ||
+                               (model == "differential" && entry.of_differential) ||
                                (model == "ackermann" && entry.of_ackermann) ||
                                (model == "body_twist" && entry.of_twist);
     if (c.enabled && !is_observable) {

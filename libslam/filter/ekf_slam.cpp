@@ -114,8 +114,6 @@ void EkfSlam::propagate(const MotionAction* action) {
   if (parts_.process) scale_process_noise();
   if (!calibration_.empty())
     calibration_.observe(state_, pose_, step_, action->dt, displacement_model());
-  if (parts_.delayed_poses)
-    parts_.delayed_poses->moved((step_.estimate - state_.estimate(pose_)).head<2>().norm());
   if (disturbed())
     parts_.disturbance->moved(state_.estimate(pose_), step_.estimate, step_.cov_noise);
   ekf_.propagate(state_, step_);

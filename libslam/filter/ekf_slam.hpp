@@ -17,7 +17,6 @@
 #include <libslam/data/step_record.hpp>
 #include <libslam/filter/building_prior.hpp>
 #include <libslam/filter/calibration_states.hpp>
-#include <libslam/filter/delayed_poses.hpp>
 #include <libslam/filter/displacement_update.hpp>
 #include <libslam/filter/disturbance_response.hpp>
 #include <libslam/filter/ekf.hpp>
@@ -51,7 +50,6 @@ struct EkfSlamParts {
   LandmarkRegistry registry{1, 0};
   std::optional<LandmarkMerging> merging;       ///< absent: landmarks stay apart
   std::optional<BuildingPrior> building_prior;  ///< absent: walls may run in any direction
-  std::optional<DelayedPoses> delayed_poses;    ///< absent: the past stays as it was
   std::optional<MapStart> map;  ///< to start in; needs no point of linearization but the estimate
   BlockVector start;  ///< start pose, storage of the motion model's pose; empty: the origin
   BlockMatrix cov_start = BlockMatrix::Zero(3, 3);        ///< of its error, tangent coordinates
@@ -91,8 +89,6 @@ class EkfSlam {
 
   const GaussianState& state() const { return state_; }
   BlockId pose() const { return pose_; }
-  /// Poses of the past in the state, the oldest first; empty without them.
-  std::span<const BlockId> delayed_poses() const;
   const LandmarkRegistry& registry() const { return parts_.registry; }
   const PhaseTimes& times() const { return times_; }
   PhaseTimes& times() { return times_; }

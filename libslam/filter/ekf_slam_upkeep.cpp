@@ -6,16 +6,10 @@ namespace libslam {
 
 void EkfSlam::keep_up() {
   const PhaseTimer timer(times_, Phase::kUpdate);
-  if (parts_.delayed_poses) parts_.delayed_poses->update(state_, pose_);
   if (landmarks_given_ || disturbed()) return;
   if (parts_.merging)
     parts_.merging->update(state_, ekf_, pose_, *parts_.measurement, parts_.registry);
   if (parts_.building_prior) parts_.building_prior->apply(state_, ekf_, pose_, parts_.registry);
-}
-
-std::span<const BlockId> EkfSlam::delayed_poses() const {
-  if (!parts_.delayed_poses) return {};
-  return parts_.delayed_poses->poses();
 }
 
 }  // namespace libslam

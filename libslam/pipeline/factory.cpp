@@ -154,8 +154,6 @@ void add_upkeep(const Parameters& p, EkfSlamParts& parts) {
     parts.building_prior.emplace(BuildingPriorOptions{prior.sigma_deg * kPi / 180.0,
                                                       prior.min_sightings, prior.min_length,
                                                       chi_square_quantile(prior.probability, 1)});
-  if (p.filter.delayed_pose_spacing > 0.0)
-    parts.delayed_poses.emplace(p.filter.delayed_pose_spacing);
 }
 
 }  // namespace

@@ -35,7 +35,6 @@ struct FilterParameters {
   std::string linearization = "estimate";
   double initial_sigma_xy = 0.0;
   double initial_sigma_heading_deg = 0.0;
-  double delayed_pose_spacing = 0.0;
   BuildingPriorParameters building_prior;
 
   void describe(auto& v) {
@@ -53,11 +52,6 @@ struct FilterParameters {
             {"m", "Standard deviation of the start position.", 0});
     v.value("initial_sigma_heading_deg", initial_sigma_heading_deg,
             {"deg", "Standard deviation of the start heading.", 0});
-    v.value("delayed_pose_spacing", delayed_pose_spacing,
-            {"m",
-             "Distance after which the pose is kept in the state, so that later corrections move "
-             "the path behind the robot, too (trajectory_smoothed.tum); 0: never.",
-             0});
     v.section("building_prior", building_prior);
   }
 };

@@ -96,6 +96,8 @@ class Run {
     RunSummary summary =
         recorder_.finish(summarize(), map, request_.truth, landmark_identity(request_.parameters));
     if (request_.parameters.output.mrpt_files) write_mrpt_files(map);
+    if (const auto smoothed = pipeline_.filter().smoothed_path())
+      replace_file(request_.directory / "trajectory_smoothed.tum", tum_text(*smoothed));
     if (failure_) std::rethrow_exception(failure_);
     return summary;
   }

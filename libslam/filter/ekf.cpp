@@ -149,6 +149,29 @@ Correction Ekf::correct(GaussianState& state, BlockId pose,
   return {true, nis, static_cast<int>(m)};
 }
 
+void Ekf::spread(GaussianState& state, BlockId pose, std::span<const BlockId> shadows,
+                 const MatrixRef& root, const VectorRef& white, std::span<const BlockId> kept) {
+  placed_.clear();
+  placed_.reserve(shadows.size());
+  rows_.clear();
+  Index m = 0;
+  for (const BlockId block : shadows) {
+    const Index d = state.size(block);
+    placed_.push_back({state.offset(block), BlockMatrix::Identity(d, d)});
+    rows_.push_back({m, d, std::span(&placed_.back(), 1)});
+    m += d;
+  }
+  if (s_.rows() < m) s_.resize(2 * m, 2 * m);
+  state.covariance().observe(rows_, s_.topLeftCorner(m, m));
+  const Index n = state.dimension();
+  if (delta_.size() < n) delta_.resize(2 * n);
+  considered_.clear();
+  for (const BlockId block : kept)
+    for (Index i = 0; i < state.size(block); ++i) considered_.push_back(state.offset(block) + i);
+  state.covariance().spread(root, white, considered_, delta_.head(n));
+  state.covariance().correct(frame_->retract(state, pose, delta_.head(n)));
+}
+
 // With W = L^-1 [0 .. R_i .. 0]^T, zero above the rows of i:  e_i = W^T L^-1 nu, C_i = R_i - W^T W.
 // Plain loops: the blocks are so small that general products and solvers cost several times more.
 void Ekf::look_back(std::span<const LinearizedMeasurement> measurements,

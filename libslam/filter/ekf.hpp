@@ -63,6 +63,12 @@ class Ekf {
                      std::span<const LinearizedMeasurement> measurements,
                      std::span<const BlockId> considered = {});
 
+  /// Takes information back: P <- P + B M B^T, delta = B root white, with B the covariance of the
+  /// state with `shadows` (filter/hindsight.hpp) and M = root root^T. The blocks in `kept` do not
+  /// change.
+  void spread(GaussianState& state, BlockId pose, std::span<const BlockId> shadows,
+              const MatrixRef& root, const VectorRef& white, std::span<const BlockId> kept);
+
   /// After a correction that was applied, with the same measurements: what it left behind of each,
   /// without the position of its feature. Exact where no block was considered.
   void look_back(std::span<const LinearizedMeasurement> measurements, std::vector<Postfit>& out);

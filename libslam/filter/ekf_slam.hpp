@@ -59,7 +59,8 @@ struct UpdateOutcome {
   int nis_dof = 0;
   int accepted = 0, gated = 0, ambiguous = 0, new_landmarks = 0;
   std::vector<Verdict> verdicts;  ///< one per feature
-  /// What a run should tell: "disturbance", "lost", "relocalized", "impossible_motion".
+  /// What a run should tell: "disturbance", "lost", "relocalized", "impossible_motion", joined as
+  /// data/step_events.hpp says.
   std::string event;
 
   UpdateOutcome& operator+=(const UpdateOutcome& other);
@@ -91,7 +92,10 @@ class EkfSlam {
   /// every innovation, and none is added (MapStart::landmarks_given); or SLAM again.
   void give_landmarks(bool given);
 
+  /// What is estimated, and shadows of it (filter/hindsight.hpp).
   const GaussianState& state() const { return state_; }
+  /// Of all that is estimated, in state order: full symmetric, without the shadows.
+  Eigen::MatrixXd covariance() const;
   BlockId pose() const { return pose_; }
   const LandmarkRegistry& registry() const { return parts_.registry; }
   const PhaseTimes& times() const { return times_; }
@@ -125,6 +129,7 @@ class EkfSlam {
   void linearize_pairs(std::span<const Feature> features);
   void respond(std::span<const Feature> features, UpdateOutcome& outcome);
   void start_again_at(const FoundPose& found, std::span<const Feature> features);
+  void reconsider(UpdateOutcome& outcome);
   /// Gives up an observation that implies an impossible motion; the landmarks start anew, unless
   /// they are given.
   void reject_impossible(std::span<const Feature> features, UpdateOutcome& outcome);

@@ -134,6 +134,14 @@ void Ekf::expect(const GaussianState& state, BlockId pose,
 Correction Ekf::correct(GaussianState& state, BlockId pose,
                         std::span<const LinearizedMeasurement> measurements,
                         std::span<const BlockId> considered) {
+  const Correction correction = solve(state, measurements, considered);
+  if (correction.applied) apply(state, pose);
+  return correction;
+}
+
+Correction Ekf::solve(GaussianState& state, std::span<const LinearizedMeasurement> measurements,
+                      std::span<const BlockId> considered) {
+  step_size_ = 0;
   if (measurements.empty()) return {};
   const Index m = stack(state, measurements);
   state.covariance().observe(rows_, s_.topLeftCorner(m, m));
@@ -145,7 +153,7 @@ Correction Ekf::correct(GaussianState& state, BlockId pose,
   for (const BlockId block : considered)
     for (Index i = 0; i < state.size(block); ++i) considered_.push_back(state.offset(block) + i);
   state.covariance().gain(s_.topLeftCorner(m, m), white_.head(m), considered_, delta_.head(n));
-  state.covariance().correct(frame_->retract(state, pose, delta_.head(n)));
+  step_size_ = n;
   return {true, nis, static_cast<int>(m)};
 }
 
@@ -169,7 +177,16 @@ void Ekf::spread(GaussianState& state, BlockId pose, std::span<const BlockId> sh
   for (const BlockId block : kept)
     for (Index i = 0; i < state.size(block); ++i) considered_.push_back(state.offset(block) + i);
   state.covariance().spread(root, white, considered_, delta_.head(n));
-  state.covariance().correct(frame_->retract(state, pose, delta_.head(n)));
+  step_size_ = n;
+  apply(state, pose);
+}
+
+void Ekf::apply(GaussianState& state, BlockId pose) {
+  state.covariance().correct(move(state, pose));
+}
+
+ChartChange Ekf::move(GaussianState& state, BlockId pose) const {
+  return frame_->retract(state, pose, step());
 }
 
 // With W = L^-1 [0 .. R_i .. 0]^T, zero above the rows of i:  e_i = W^T L^-1 nu, C_i = R_i - W^T W.

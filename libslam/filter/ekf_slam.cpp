@@ -208,10 +208,21 @@ void EkfSlam::linearize_pairs(std::span<const Feature> features) {
   if (parts_.disturbance || parts_.implied_input) linearize(Outcome::kGated);
 }
 
+Correction EkfSlam::correct_with_pairs(std::span<const Feature> features) {
+  if (!parts_.iteration) return ekf_.correct(state_, pose_, accepted(), considered());
+  return parts_.iteration->correct(
+      state_, ekf_, pose_, std::span(measured_).first(used_.size()), considered(),
+      [&](std::size_t i, LinearizedMeasurement& measurement) {
+        const BlockId landmark = parts_.registry.landmarks()[verdicts_[used_[i]].landmark].block;
+        linearizer_.linearize(*parts_.measurement, state_, pose_, landmark, features[used_[i]],
+                              measurement);
+      });
+}
+
 void EkfSlam::correct(std::span<const Feature> features, UpdateOutcome& outcome) {
   const PhaseTimer timer(times_, Phase::kUpdate);
   const Eigen::Vector2d before = state_.estimate(pose_).head<2>();
-  const Correction correction = ekf_.correct(state_, pose_, accepted(), considered());
+  const Correction correction = correct_with_pairs(features);
   if (correction.applied) {
     linearizer_.corrected(state_, pose_, before);
     outcome.accepted = static_cast<int>(used_.size());

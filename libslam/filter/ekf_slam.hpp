@@ -20,6 +20,7 @@
 #include <libslam/filter/displacement_update.hpp>
 #include <libslam/filter/disturbance_response.hpp>
 #include <libslam/filter/ekf.hpp>
+#include <libslam/filter/iterated_update.hpp>
 #include <libslam/filter/linearizer.hpp>
 #include <libslam/filter/map_start.hpp>
 #include <libslam/filter/selected_pairs.hpp>
@@ -43,6 +44,7 @@ struct EkfSlamParts {
   std::optional<DisplacementUpdate> displacement;
   std::unique_ptr<NoisePolicy> noise;              ///< null: R as the features bring it
   std::unique_ptr<ProcessScale> process;           ///< null: Q as the motion model says
+  std::optional<IteratedUpdate> iteration;         ///< absent: one linearization per correction
   std::optional<DisturbanceResponse> disturbance;  ///< absent: every observation is believed
   std::optional<ImpliedInput> implied_input;       ///< absent: any motion is possible
   std::optional<DelayedPoses> delayed;             ///< absent: the past is forgotten
@@ -134,6 +136,7 @@ class EkfSlam {
   /// they are given.
   void reject_impossible(std::span<const Feature> features, UpdateOutcome& outcome);
   void correct(std::span<const Feature> features, UpdateOutcome& outcome);
+  Correction correct_with_pairs(std::span<const Feature> features);
   void add_landmarks(std::span<const Feature> features, UpdateOutcome& outcome);
 
   EkfSlamParts parts_;

@@ -52,6 +52,21 @@ TEST(SpatialValidation, AcceptsWhatIsSound) {
   }
 }
 
+TEST(SpatialValidation, IterationsLookForTheirPointOfLinearizationThemselves) {
+  Parameters p = in_space();
+  p.filter.update_linearizations = 3;
+  EXPECT_EQ(culprits(p), std::vector<std::string>{});
+  p = Parameters();
+  p.filter.update_linearizations = 3;
+  EXPECT_EQ(culprits(p), std::vector<std::string>{});
+  p.filter.error_frame = "standard";
+  p.filter.linearization = "first_estimate";
+  EXPECT_EQ(culprits(p), std::vector<std::string>{"filter.update_linearizations"});
+  p.filter.linearization = "estimate";
+  p.measurement.model = p.frontend.source = "sensor_displacement";
+  EXPECT_TRUE(blames(p, "filter.update_linearizations"));
+}
+
 TEST(SpatialValidation, TwistAndBodyTwistBelongTogether) {
   Parameters p = in_space();
   p.input.odometry = "auto";

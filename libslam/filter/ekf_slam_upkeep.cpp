@@ -4,6 +4,10 @@
 
 namespace libslam {
 
+std::optional<Extent> EkfSlam::sighted_part(BlockId landmark, const Feature& feature) const {
+  return parts_.measurement->sighted_part(state_, pose_, landmark, feature);
+}
+
 void EkfSlam::keep_up() {
   const PhaseTimer timer(times_, Phase::kUpdate);
   if (landmarks_given_ || disturbed()) return;

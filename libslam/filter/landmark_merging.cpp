@@ -6,14 +6,14 @@ int LandmarkMerging::update(GaussianState& state, Ekf& ekf, BlockId pose,
                             const MeasurementModel& model, LandmarkRegistry& registry) {
   if (++updates_ % options_.every != 0) return 0;
   const int before = merged_;
-  for (std::size_t i = 0; i < registry.size(); ++i) {
-    if (registry.landmarks()[i].unseen > options_.every) continue;
-    for (std::size_t k = 0; k < registry.size(); ++k)
-      if (k != i && merge(state, ekf, pose, model, registry, i, k)) {
-        // What is behind has moved up: look at this place again, from the start.
-        i = std::min(i, k) - 1;
-        break;
-      }
+  std::size_t i = 0;
+  while (i < registry.size()) {
+    bool changed = false;
+    if (registry.landmarks()[i].unseen <= options_.every)
+      for (std::size_t k = 0; k < registry.size() && !changed; ++k)
+        changed = k != i && merge(state, ekf, pose, model, registry, i, k);
+    // After a merge landmarks have moved up, and the one that is left may fit another.
+    i = changed ? 0 : i + 1;
   }
   return merged_ - before;
 }

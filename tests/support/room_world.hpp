@@ -21,8 +21,8 @@ struct Wall {
 
 struct RoomWorld {
   /// A polygon with oblique walls, a block inside it, and the far walls of a corridor.
-  std::vector<Wall> walls{{{-6, -5}, {7, -5}}, {{7, -5}, {7, 4}},      {{7, 4}, {1, 8}},
-                          {{1, 8}, {-6, 6}},   {{-6, 6}, {-6, -5}},    {{-1, 0.5}, {-1, 1.5}},
+  std::vector<Wall> walls{{{-6, -5}, {7, -5}}, {{7, -5}, {7, 4}},     {{7, 4}, {1, 8}},
+                          {{1, 8}, {-6, 6}},   {{-6, 6}, {-6, -5}},   {{-1, 0.5}, {-1, 1.5}},
                           {{-1, 1.5}, {1, 2}}, {{40, -20}, {40, 30}}, {{-20, 35}, {30, 33}}};
   Eigen::Vector3d T_robot_sensor = Eigen::Vector3d(0.3, -0.2, 0.4);
   Eigen::Vector3d pose = Eigen::Vector3d(2, -2, 0.1);  ///< true pose
@@ -30,8 +30,7 @@ struct RoomWorld {
   double sigma_forward = 0.01, sigma_turn = 0.005;  ///< odometry noise per step
 
   Eigen::Vector2d sensor_position() const {
-    return pose.head<2>() +
-           Eigen::Rotation2Dd(pose[2]) * Eigen::Vector2d(T_robot_sensor.head<2>());
+    return pose.head<2>() + Eigen::Rotation2Dd(pose[2]) * Eigen::Vector2d(T_robot_sensor.head<2>());
   }
 
   /// Drives one step and returns what the odometry says; noise scaled by `noise`.
@@ -66,9 +65,9 @@ struct RoomWorld {
       feature.id = static_cast<std::int64_t>(i);
       feature.T_robot_sensor = T_robot_sensor;
       feature.cov = Eigen::Vector2d(sigma_alpha, sigma_r).cwiseAbs2().asDiagonal();
-      feature.z =
-          Eigen::Vector2d(wrap_angle(std::atan2(n.y(), n.x()) + noise * sigma_alpha * normal(random)),
-                          n.dot(from) + noise * sigma_r * normal(random));
+      feature.z = Eigen::Vector2d(
+          wrap_angle(std::atan2(n.y(), n.x()) + noise * sigma_alpha * normal(random)),
+          n.dot(from) + noise * sigma_r * normal(random));
       const double a = left.dot(from), b = left.dot(to);
       feature.extent = Extent{std::min(a, b), std::max(a, b), 0.01, 0.01};
     }

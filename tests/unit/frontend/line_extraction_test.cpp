@@ -85,9 +85,9 @@ TEST(LineExtraction, TheCovarianceIsThatOfTheNoiseOfTheBeams) {
   }
   for (int i = 0; i < 2; ++i)
     for (int k = 0; k < 2; ++k)
-      EXPECT_NEAR(sampled(i, k), predicted(i, k),
-                  (5.0 * std::sqrt(2.0 / kSamples) + 0.02) *
-                      std::sqrt(predicted(i, i) * predicted(k, k)));
+      EXPECT_NEAR(
+          sampled(i, k), predicted(i, k),
+          (5.0 * std::sqrt(2.0 / kSamples) + 0.02) * std::sqrt(predicted(i, i) * predicted(k, k)));
 }
 
 TEST(LineExtraction, TheFloorStandsAtTheCentreAndIsWiderForShortLines) {

@@ -165,8 +165,7 @@ TEST(LineMeasurement, ThePartSeenStaysWhereItIsInTheWorld) {
     const Eigen::Vector2d end_robot =
         scene.feature.T_robot_sensor.head<2>() + scene.feature.z[1] * n_robot +
         scene.feature.extent->end * Eigen::Vector2d(-n_robot.y(), n_robot.x());
-    const Eigen::Vector2d end_world =
-        pose.head<2>() + Eigen::Rotation2Dd(pose[2]) * end_robot;
+    const Eigen::Vector2d end_world = pose.head<2>() + Eigen::Rotation2Dd(pose[2]) * end_robot;
     EXPECT_LT((line[1] * n + part->end * along - end_world).norm(), 1e-9);
     EXPECT_NEAR(part->length(), scene.feature.extent->length(), 1e-9);
   }
@@ -178,8 +177,7 @@ TEST(LineMeasurement, DifferenceIsZeroForOneWallAndRefusedForTwo) {
   Initialization again;
   model.initialize(scene.state, scene.pose, scene.feature, again);
   const BlockId twin = scene.state.augment(model.landmark_spec(), again);
-  const Extent part =
-      *model.sighted_part(scene.state, scene.pose, scene.landmark, scene.feature);
+  const Extent part = *model.sighted_part(scene.state, scene.pose, scene.landmark, scene.feature);
   LinearizedMeasurement out;
   ASSERT_TRUE(model.difference(scene.state, {scene.landmark, part}, {twin, part}, 0.6, out));
   EXPECT_LT(out.innovation.norm(), 1e-12);

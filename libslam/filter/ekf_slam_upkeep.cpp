@@ -16,4 +16,15 @@ void EkfSlam::keep_up() {
   if (parts_.building_prior) parts_.building_prior->apply(state_, ekf_, pose_, parts_.registry);
 }
 
+void EkfSlam::remember_pose(double time) {
+  if (!parts_.delayed) return;
+  const PhaseTimer timer(times_, Phase::kAugment);
+  parts_.delayed->remember(state_, pose_, time);
+}
+
+std::optional<Trajectory> EkfSlam::smoothed_path() const {
+  if (!parts_.delayed) return std::nullopt;
+  return parts_.delayed->path(state_);
+}
+
 }  // namespace libslam

@@ -58,6 +58,11 @@ Getter of_relative(double RelativeErrors::*figure) {
                                   [=](const RelativeErrors& r) { return r.*figure; });
 }
 
+Getter of_relations(double RelationErrors::*figure) {
+  return of_truth<RelationErrors>(&TruthComparison::relations,
+                                  [=](const RelationErrors& r) { return r.*figure; });
+}
+
 Value cpu_ms_per_step(const RunSummary& s) {
   if (s.timing.steps < 1) return std::nullopt;
   return 1e3 * s.timing.cpu_s / static_cast<double>(s.timing.steps);
@@ -99,6 +104,21 @@ void describe_path(std::vector<Description>& list) {
       {"rpe_rot_deg_per_m", "  drift [deg/m]", of_relative(&RelativeErrors::rot_deg_per_m)});
   list.push_back(
       {"poses", "poses matched", of_path([](const PathErrors& p) { return p.poses; }), true});
+}
+
+void describe_relations(std::vector<Description>& list) {
+  list.push_back({"relations_trans_mean_m", "relations, translation [m]",
+                  of_relations(&RelationErrors::trans_mean_m)});
+  list.push_back(
+      {"relations_trans_std_m", "  deviation [m]", of_relations(&RelationErrors::trans_std_m)});
+  list.push_back({"relations_rot_mean_deg", "relations, rotation [deg]",
+                  of_relations(&RelationErrors::rot_mean_deg)});
+  list.push_back(
+      {"relations_rot_std_deg", "  deviation [deg]", of_relations(&RelationErrors::rot_std_deg)});
+  list.push_back({"relations_matched", "relations matched",
+                  of_truth<RelationErrors>(&TruthComparison::relations,
+                                           [](const RelationErrors& r) { return r.matched; }),
+                  true});
 }
 
 /// Ideal value of a figure of NEES, by the degrees of freedom of the runs: "(3)", "(3 or 6)".
@@ -185,6 +205,7 @@ std::string pad(const std::string& text, std::size_t width, bool left) {
 std::vector<Figure> figures_of(const std::vector<EvaluatedRun>& runs, bool detailed) {
   std::vector<Description> list;
   describe_path(list);
+  describe_relations(list);
   describe_consistency(list, runs);
   describe_map(list);
   describe_calibration(list, runs);

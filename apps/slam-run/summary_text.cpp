@@ -32,6 +32,9 @@ void report(const RunSummary& summary, const fs::path& directory, Console& conso
     if (path.aligned)
       console.say("  path error (RMSE): " + number(path.aligned->rmse_m) + " m aligned");
   }
+  if (summary.truth && summary.truth->relations)
+    console.say("  relations: " + number(summary.truth->relations->trans_mean_m) + " m, " +
+                number(summary.truth->relations->rot_mean_deg) + " deg");
   if (summary.truth && summary.truth->map && summary.truth->map->rmse_aligned_m)
     console.say("  map error (RMSE): " + number(*summary.truth->map->rmse_aligned_m) +
                 " m aligned, " + std::to_string(summary.truth->map->missed) + " missed, " +

@@ -87,6 +87,19 @@ std::string path_card(const TruthComparison& truth) {
   return card.row("matched poses", std::to_string(path.poses)).html();
 }
 
+std::string relations_card(const TruthComparison& truth) {
+  if (!truth.relations) return "";
+  const RelationErrors& errors = *truth.relations;
+  return Card("Path against relations")
+      .row("translation", format_figure(errors.trans_mean_m, "m") + " \u00b1 " +
+                              format_figure(errors.trans_std_m, "m"))
+      .row("rotation", format_figure(errors.rot_mean_deg, "\u00b0") + " \u00b1 " +
+                           format_figure(errors.rot_std_deg, "\u00b0"))
+      .row("matched / unmatched",
+           std::to_string(errors.matched) + " / " + std::to_string(errors.unmatched))
+      .html();
+}
+
 std::string map_card(const TruthComparison& truth) {
   if (!truth.map) return "";
   const MapErrors& map = *truth.map;
@@ -178,7 +191,8 @@ std::string timing_card(const RunSummary& s) {
 
 std::string key_figures_html(const RunSummary& summary) {
   std::string html = run_card(summary);
-  if (summary.truth) html += path_card(*summary.truth) + map_card(*summary.truth);
+  if (summary.truth)
+    html += path_card(*summary.truth) + relations_card(*summary.truth) + map_card(*summary.truth);
   return html + consistency_card(summary) + calibration_card(summary) + noise_card(summary) +
          events_card(summary) + timing_card(summary);
 }

@@ -15,6 +15,7 @@
 #include <libslam/data/step_record.hpp>
 #include <libslam/map/landmark_map.hpp>
 #include <libslam/result/metrics.hpp>
+#include <libslam/result/relations.hpp>
 
 namespace libslam {
 
@@ -24,6 +25,7 @@ struct TruthComparison {
   std::optional<RelativeErrors> relative;
   std::optional<NeesSummary> nees;
   std::optional<MapErrors> map;
+  std::optional<RelationErrors> relations;
   std::map<std::string, double> calibration_error;  ///< estimate - truth
   /// T_truth_filter used for raw figures, else the fit of the path; absent without a path. One of
   /// the two: of a comparison in the plane, or in space.

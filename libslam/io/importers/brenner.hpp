@@ -1,0 +1,22 @@
+#pragma once
+// LEGO robot with a laser (C. Brenner, Univ. Hannover, SLAM lectures): ticks of two tracks, raw
+// scans, six cylinders, positions from an overhead camera.
+
+#include <string>
+
+#include <libslam/io/importers/imported_log.hpp>
+
+namespace libslam {
+
+struct BrennerOptions {
+  double metres_per_tick = 0.349e-3;  ///< nominal, both tracks [m]
+  double track_width = 0.155;         ///< nominal [m]; the odometry poses are computed with it
+};
+
+/// `directory` holds robot4_motors.txt, robot4_scan.txt, robot4_reference.txt and
+/// robot_arena_landmarks.txt, each optionally with ".gz". Pose: middle between the tracks; the
+/// laser is 30 mm ahead of it. Path of the truth: positions of the laser, in the frame of the
+/// arena; landmarks: centres of the cylinders, numbered from 0. Throws InputError.
+ImportedLog import_brenner(const std::string& directory, const BrennerOptions& options);
+
+}  // namespace libslam

@@ -10,6 +10,7 @@
 #include <libslam/association/nearest_neighbour.hpp>
 #include <libslam/frontend/fiducials.hpp>
 #include <libslam/frontend/range_bearing_observation.hpp>
+#include <libslam/frontend/scan_trunks.hpp>
 #include <libslam/frontend/sensor_path_observation.hpp>
 #include <libslam/frontend/stereo_features.hpp>
 #include <libslam/frontend/stereo_observation.hpp>
@@ -178,6 +179,8 @@ std::unique_ptr<Frontend> make_frontend(const Parameters& p) {
                                             p.association.uses_identities());
   if (p.frontend.source == "fiducials")
     return std::make_unique<Fiducials>(p.frontend, p.input.sensor_label);
+  if (p.frontend.source == "scan_trunks")
+    return std::make_unique<ScanTrunks>(p.frontend, p.measurement, p.input.sensor_label);
   throw_unknown("front-end", p.frontend.source);
 }
 

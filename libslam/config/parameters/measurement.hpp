@@ -6,6 +6,7 @@
 #include <libslam/config/description.hpp>
 #include <libslam/config/parameters/stereo.hpp>
 #include <libslam/config/parameters/stereo_noise.hpp>
+#include <libslam/config/parameters/trunks.hpp>
 
 namespace libslam {
 
@@ -16,21 +17,25 @@ struct FrontendParameters {
   double max_range = 1e6;
   StereoFrontendParameters stereo;
   FiducialParameters fiducials;
+  TrunkParameters trunks;
 
   void describe(auto& v) {
     v.value("source", source,
             {"",
              "Where features come from: range-bearing observations, the path that a sensor reports "
              "of itself (odometry observations labelled input.sensor_label), logged points of a "
-             "stereo camera, points of its images, or tags in its images.",
+             "stereo camera, points of its images, tags in its images, or trunks in the scans of a "
+             "laser.",
              0,
              0,
-             {"range_bearing", "sensor_path", "stereo_points", "stereo_images", "fiducials"}});
+             {"range_bearing", "sensor_path", "stereo_points", "stereo_images", "fiducials",
+              "scan_trunks"}});
     v.value("min_range", min_range,
             {"m", "Nearer observations are ignored; of stereo points by their depth.", 0});
     v.value("max_range", max_range, {"m", "Farther observations are ignored.", 0});
     v.section("stereo", stereo);
     v.section("fiducials", fiducials);
+    v.section("trunks", trunks);
   }
 };
 

@@ -8,13 +8,12 @@
 #include <libslam/config/digest.hpp>
 #include <libslam/config/version.hpp>
 #include <libslam/config/yaml_loader.hpp>
-#include <libslam/io/exporters/scene_3d.hpp>
-#include <libslam/io/exporters/simple_map.hpp>
 #include <libslam/io/input_error.hpp>
 #include <libslam/io/map_file.hpp>
 #include <libslam/io/rawlog_player.hpp>
 #include <libslam/pipeline/frame_picture.hpp>
 #include <libslam/pipeline/landmark_identity.hpp>
+#include <libslam/pipeline/mrpt_files.hpp>
 #include <libslam/pipeline/pipeline.hpp>
 #include <libslam/pipeline/process_usage.hpp>
 #include <libslam/pipeline/run.hpp>
@@ -93,9 +92,11 @@ class Run {
   RunSummary finish() {
     save_map();
     const LandmarkMap map = finite_landmarks();
+    if (request_.parameters.output.mrpt_files)
+      if (auto picture = mrpt_files_.render_grid()) recorder_.add_picture(std::move(*picture));
     RunSummary summary =
         recorder_.finish(summarize(), map, request_.truth, landmark_identity(request_.parameters));
-    if (request_.parameters.output.mrpt_files) write_mrpt_files(map);
+    if (request_.parameters.output.mrpt_files) mrpt_files_.write(request_.directory, map);
     if (failure_) std::rethrow_exception(failure_);
     return summary;
   }
@@ -118,12 +119,6 @@ class Run {
     for (auto& landmark : pipeline_.filter().landmarks())
       if (landmark.mean.allFinite() && landmark.cov.allFinite()) map.add(std::move(landmark));
     return map;
-  }
-
-  void write_mrpt_files(const LandmarkMap& map) const {
-    write_scene_3d(request_.directory / "scene.3Dscene",
-                   trajectory_of(read_path(request_.directory / "trajectory.csv")), map);
-    simple_map_.write(request_.directory / "map.simplemap");
   }
 
   bool stopped() const { return request_.stop != nullptr && request_.stop->load(); }
@@ -158,7 +153,7 @@ class Run {
     any_used_ = any_used_ || record.accepted > 0 || record.new_landmarks > 0;
     unused_sightings_ += record.ambiguous + record.gated;
     recorder_.record(record);
-    if (request_.parameters.output.mrpt_files) keep_frame(record, step.frame);
+    if (request_.parameters.output.mrpt_files) mrpt_files_.keep(record, step.frame);
     if (!has_picture_ && record.accepted > 0) draw(*step.frame);
     if (request_.on_step) request_.on_step(player_.progress(), record);
   }
@@ -168,13 +163,6 @@ class Run {
     has_picture_ = true;
     if (auto picture = draw_frame(frame, pipeline_.last_features()))
       recorder_.add_picture(std::move(*picture));
-  }
-
-  void keep_frame(const StepRecord& record, const mrpt::obs::CSensoryFrame::Ptr& frame) {
-    if (record.spatial)
-      simple_map_.add(*record.spatial, frame);
-    else
-      simple_map_.add(record.pose, record.cov, frame);
   }
 
   RunSummary summarize() {
@@ -270,7 +258,7 @@ class Run {
   RawlogPlayer player_;
   Pipeline pipeline_;
   Recorder recorder_;
-  SimpleMapWriter simple_map_;
+  MrptFiles mrpt_files_;
   std::exception_ptr failure_;
   std::vector<std::string> warnings_;
   std::int64_t unusable_steps_ = 0, unused_sightings_ = 0;

@@ -2,7 +2,6 @@
 #include <cmath>
 #include <stdexcept>
 
-#include <mrpt/maps/CSimpleMap.h>
 #include <mrpt/math/CQuaternion.h>
 #include <mrpt/poses/CPose3DPDFGaussian.h>
 #include <mrpt/poses/CPosePDFGaussian.h>
@@ -85,11 +84,15 @@ void SimpleMapWriter::drop_every_second() {
   spacing_.turn_rad *= 2.0;
 }
 
-void SimpleMapWriter::write(const std::filesystem::path& file) const {
+mrpt::maps::CSimpleMap SimpleMapWriter::map() const {
   mrpt::maps::CSimpleMap map;
   for (const Pair& pair : pairs_) map.insert(pair.pose, pair.frame);
+  return map;
+}
+
+void SimpleMapWriter::write(const std::filesystem::path& file) const {
   replace_file(file, [&](const std::filesystem::path& temporary) {
-    return map.saveToFile(temporary.string());
+    return map().saveToFile(temporary.string());
   });
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <Eigen/Core>
+#include <mrpt/maps/CSimpleMap.h>
 #include <mrpt/obs/CSensoryFrame.h>
 #include <mrpt/poses/CPose3DPDF.h>
 
@@ -36,6 +37,8 @@ class SimpleMapWriter {
   void add(const SpatialEstimate& estimate, const mrpt::obs::CSensoryFrame::Ptr& frame);
 
   std::size_t size() const { return pairs_.size(); }
+  /// The pairs that were kept; their frames are shared.
+  mrpt::maps::CSimpleMap map() const;
 
   /// Replaces `file` at once or not at all. Throws std::runtime_error naming it where it cannot be
   /// written.

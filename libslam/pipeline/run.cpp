@@ -247,9 +247,24 @@ class Run {
     const PhaseTimes& times = pipeline_.filter().times();
     for (std::size_t i = 0; i < PhaseTimes::kNames.size(); ++i)
       summary.timing.phases[std::string(PhaseTimes::kNames[i])] = times.seconds[i];
+    fill_savings(summary.timing);
     summary.timing.peak_rss_mb = peak_memory_mb();
     if (summary.timing.wall_s > 0.0 && summary.input.duration_s > 0.0)
       summary.timing.realtime_factor = summary.input.duration_s / summary.timing.wall_s;
+  }
+
+  /// What the schedule saved, at the mean time of all that an update does.
+  void fill_savings(RunSummary::Timing& timing) const {
+    const auto savings = pipeline_.schedule().savings();
+    if (!savings) return;
+    timing.updates = savings->updates;
+    timing.updates_without_stretch = savings->without_stretch;
+    double spent = 0.0;
+    for (const auto& [phase, seconds] : timing.phases)
+      if (phase != PhaseTimes::kNames[static_cast<std::size_t>(Phase::kPredict)]) spent += seconds;
+    if (savings->updates > 0)
+      timing.saved_s = spent / static_cast<double>(savings->updates) *
+                       static_cast<double>(savings->without_stretch - savings->updates);
   }
 
   const RunRequest& request_;

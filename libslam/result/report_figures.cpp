@@ -179,6 +179,10 @@ std::string timing_card(const RunSummary& s) {
                                        format_figure(s.timing.step_ms->p50, "ms"))
         .row("step p95 / max", format_figure(s.timing.step_ms->p95, "ms") + " / " +
                                    format_figure(s.timing.step_ms->max, "ms"));
+  if (s.timing.updates && s.timing.updates_without_stretch)
+    card.row("updates / without stretch", std::to_string(*s.timing.updates) + " / " +
+                                              std::to_string(*s.timing.updates_without_stretch))
+        .row("time saved", s.timing.saved_s, "s");
   return card
       .row("wall / CPU",
            format_figure(s.timing.wall_s, "s") + " / " + format_figure(s.timing.cpu_s, "s"))

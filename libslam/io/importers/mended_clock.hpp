@@ -11,7 +11,7 @@ namespace libslam {
 /// time than one that follows it was stamped late, and gets a time between its good neighbours.
 /// Looks `kWindow` entries ahead, and no further, so that memory is bounded.
 ///
-/// (In the Intel log of the Radish repository every 20th stamp is up to 0.9 s late; in the order of
+/// (In the Intel log of the Radish repository every 14th stamp is up to 0.9 s late; in the order of
 /// its stamps the robot would have driven 661 m, in the order of the file 508 m.)
 class MendedClock {
  public:

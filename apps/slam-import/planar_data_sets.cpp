@@ -247,6 +247,16 @@ void PlanarDataSets::add_brenner() {
                    "Track width that the odometry poses are computed with [m]")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
+  brenner
+      ->add_option("--scan-delay", arguments_->brenner.scan_delay,
+                   "Scans are stamped so much later than ticks [s]")
+      ->check(CLI::Range(-5.0, 5.0))
+      ->capture_default_str();
+  brenner
+      ->add_option("--camera-delay", arguments_->brenner.camera_delay,
+                   "Reference positions are stamped so much later than ticks [s]")
+      ->check(CLI::Range(-5.0, 5.0))
+      ->capture_default_str();
 }
 
 void PlanarDataSets::add_csv() {

@@ -12,11 +12,11 @@ namespace {
 using Scan = mrpt::obs::CObservation2DRangeScan;
 
 /// Counter-clockwise, infinite where nothing came back.
-void read_ranges(const Scan& scan, std::vector<double>& ranges) {
+void read_ranges(const Scan& scan, double bias, std::vector<double>& ranges) {
   const std::size_t n = scan.getScanSize();
   ranges.resize(n);
   for (std::size_t i = 0; i < n; ++i) {
-    const double range = scan.getScanRange(i);
+    const double range = scan.getScanRange(i) - bias;
     const bool hit = scan.getScanRangeValidity(i) && std::isfinite(range) && range > 0.0;
     ranges[scan.rightToLeft ? i : n - 1 - i] =
         hit ? range : std::numeric_limits<double>::infinity();
@@ -34,6 +34,7 @@ ScanTrunks::ScanTrunks(const FrontendParameters& frontend, const MeasurementPara
                        std::string sensor_label)
     : min_range_(frontend.min_range),
       max_range_(frontend.max_range),
+      range_bias_(frontend.trunks.range_bias),
       configured_(
           Eigen::Vector2d(measurement.sigma_range, measurement.sigma_bearing_deg * kPi / 180.0)
               .cwiseAbs2()
@@ -53,7 +54,7 @@ void ScanTrunks::extract(const mrpt::obs::CSensoryFrame& frame,
       ++unusable_;
       continue;
     }
-    read_ranges(*scan, ranges_);
+    read_ranges(*scan, range_bias_, ranges_);
     const double aperture = scan->aperture;
     detector_.detect({ranges_, -0.5 * aperture, aperture / static_cast<double>(ranges_.size() - 1)},
                      trunks_);

@@ -35,7 +35,7 @@ class ScanTrunks final : public Frontend {
  private:
   FeatureBatch to_features(const mrpt::obs::CObservation2DRangeScan& scan);
 
-  double min_range_, max_range_;
+  double min_range_, max_range_, range_bias_;
   MeasurementMatrix configured_;
   bool only_configured_;
   std::string sensor_label_;

@@ -7,6 +7,7 @@ namespace libslam {
 
 /// Section `frontend.trunks`.
 struct TrunkParameters {
+  double range_bias = 0.0;
   double jump = 1.5;
   double gap_deg = 5.0;
   double isolation = 3.0;
@@ -20,6 +21,8 @@ struct TrunkParameters {
   double sigma_centre = 0.05;
 
   void describe(auto& v) {
+    v.value("range_bias", range_bias,
+            {"m", "The laser's ranges are too long by this; negative: too short.", -10, 10});
     v.value("jump", jump,
             {"m",
              "Neighbouring beams belong to two objects where their ranges differ by more; the "

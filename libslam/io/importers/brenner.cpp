@@ -38,7 +38,7 @@ void read_motors(const std::string& directory, const BrennerOptions& options, Im
   if (log.odometry.empty()) throw InputError(rows.row().file() + ": holds no readings");
 }
 
-void read_scans(const std::string& directory, ImportedLog& log) {
+void read_scans(const std::string& directory, double delay, ImportedLog& log) {
   log.laser.first_bearing = -kResolution * (kBeams / 2) - kMountAngle;
   log.laser.resolution = kResolution;
   log.laser.max_range = kMaxRange;
@@ -47,20 +47,20 @@ void read_scans(const std::string& directory, ImportedLog& log) {
   while (rows.next()) {
     if (rows.row().integer(2) != kBeams || rows.row().columns() != kBeams + 3)
       rows.row().reject("a scan has 660 ranges");
-    log.add_laser_scan(rows.row(), rows.time(), 3, kMilli);
+    log.add_laser_scan(rows.row(), rows.time() - delay, 3, kMilli);
   }
 }
 
-void read_truth(const std::string& directory, ImportedLog& log) {
+void read_truth(const std::string& directory, double delay, ImportedLog& log) {
   Trajectory& path = log.truth.path;
   path.has_heading = false;
   path.point_on_robot = {kLaserAhead, 0.0};
   MarkedRows positions(directory, "robot4_reference.txt", "P");  // P t x y
   while (positions.next()) {
     const TextReader& row = positions.row();
-    if (!path.times.empty() && positions.time() < path.times.back())
-      row.reject("time goes backwards");
-    path.times.push_back(positions.time());
+    const double time = positions.time() - delay;
+    if (!path.times.empty() && time < path.times.back()) row.reject("time goes backwards");
+    path.times.push_back(time);
     path.poses.emplace_back(kMilli * row.number(2), kMilli * row.number(3), 0.0);
   }
   MarkedRows cylinders(directory, "robot_arena_landmarks.txt", "L");  // L C x y diameter
@@ -80,9 +80,11 @@ ImportedLog import_brenner(const std::string& directory, const BrennerOptions& o
   log.scenario = "LEGO robot of the SLAM lectures (Brenner)";
   log.T_robot_sensor = {kLaserAhead, 0.0, 0.0};
   read_motors(directory, options, log);
-  read_scans(directory, log);
-  read_truth(directory, log);
+  read_scans(directory, options.scan_delay, log);
+  read_truth(directory, options.camera_delay, log);
   log.parameters["track_width"] = options.track_width;
+  log.parameters["scan_delay"] = options.scan_delay;
+  log.parameters["camera_delay"] = options.camera_delay;
   log.parameters["metres_per_tick"] = options.metres_per_tick;
   log.remarks["path"] = "overhead camera, positions of the laser; x and y of the arena, no heading";
   return log;

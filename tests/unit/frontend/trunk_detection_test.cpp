@@ -263,6 +263,18 @@ TEST(ScanTrunks, FeaturesOfBothDirectionsOfScanning) {
   }
 }
 
+TEST(ScanTrunks, BiasOfTheLaserIsTakenOffItsRanges) {
+  Scene scene;
+  scene.add({5.0, 0.2, 0.4});
+  FrontendParameters parameters;
+  parameters.trunks.known_diameter = 0.4;
+  ScanTrunks known(parameters, {}, "");
+  parameters.trunks.range_bias = -0.1;
+  ScanTrunks biased(parameters, {}, "");
+  const auto scan = to_scan(scene, true);
+  EXPECT_NEAR(extract(biased, scan)[0][0].z[0] - extract(known, scan)[0][0].z[0], 0.1, 1e-3);
+}
+
 TEST(ScanTrunks, RangeLimitsLabelsNoiseAndUselessScans) {
   Scene scene;
   scene.add({5.0, -0.6, 0.4}).add({12.0, 0.3, 0.6});

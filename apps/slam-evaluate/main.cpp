@@ -91,6 +91,9 @@ EvaluatedRun evaluate_run(const fs::path& directory, const Arguments& arguments,
   }
   run.summary.truth = compare_with_truth(recorded, truth, identity_of(directory), arguments.window,
                                          placement_of(arguments));
+  if (const fs::path smoothed = directory / "trajectory_smoothed.tum"; fs::exists(smoothed))
+    run.summary.truth->relations_smoothed =
+        compare_relations(read_true_path(smoothed), truth.relations);
   if (!truth.path.poses.empty() && !run.summary.truth->path)
     warning = directory.string() +
               ": no pose of the run, or of the part of it that was asked for, "

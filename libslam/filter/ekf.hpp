@@ -63,6 +63,24 @@ class Ekf {
                      std::span<const LinearizedMeasurement> measurements,
                      std::span<const BlockId> considered = {});
 
+  /// Takes information back: P <- P + B M B^T, delta = B root white, with B the covariance of the
+  /// state with `shadows` (filter/hindsight.hpp) and M = root root^T. The blocks in `kept` do not
+  /// change.
+  void spread(GaussianState& state, BlockId pose, std::span<const BlockId> shadows,
+              const MatrixRef& root, const VectorRef& white, std::span<const BlockId> kept);
+
+  /// The two halves of `correct`, for those who look at the step before they take it. `solve`
+  /// leaves the state alone; `applied` says whether there is a step.
+  Correction solve(GaussianState& state, std::span<const LinearizedMeasurement> measurements,
+                   std::span<const BlockId> considered = {});
+  /// The step that was solved last: an additive error of the whole state. Valid until the next one.
+  Eigen::Map<const Eigen::VectorXd> step() const { return {delta_.data(), step_size_}; }
+  /// Takes that step; nothing else may have happened to the covariance in between.
+  void apply(GaussianState& state, BlockId pose);
+  /// Moves the estimates alone by that step, as `apply` does; returns the change of the error that
+  /// goes with it (ErrorFrame::retract).
+  [[nodiscard]] ChartChange move(GaussianState& state, BlockId pose) const;
+
   /// After a correction that was applied, with the same measurements: what it left behind of each,
   /// without the position of its feature. Exact where no block was considered.
   void look_back(std::span<const LinearizedMeasurement> measurements, std::vector<Postfit>& out);
@@ -91,6 +109,7 @@ class Ekf {
   Eigen::MatrixXd s_;
   Eigen::MatrixXd divided_;  // L^-1 times R of one measurement, or the columns of one block
   Eigen::VectorXd nu_, white_, delta_;
+  Eigen::Index step_size_ = 0;
 };
 
 }  // namespace libslam

@@ -31,16 +31,6 @@ std::string landmarks_text(const std::vector<TrueLandmark>& landmarks) {
   return text;
 }
 
-std::string path_text(const Trajectory& path) {
-  std::string text;
-  for (std::size_t i = 0; i < path.times.size(); ++i)
-    if (path.spatial.empty())
-      append_tum_row(text, path.times[i], path.poses[i]);
-    else
-      append_tum_row(text, path.times[i], path.spatial[i]);
-  return text;
-}
-
 std::string relations_text(const std::vector<PoseRelation>& relations) {
   std::string text;
   for (const PoseRelation& relation : relations) {
@@ -63,7 +53,7 @@ void remove_truth_beside(const std::string& rawlog) {
 
 void write_truth_beside(const std::string& rawlog, const GroundTruth& truth,
                         const std::string& notes) {
-  const std::string path = path_text(truth.path);
+  const std::string path = tum_text(truth.path);
   if (!path.empty()) replace_file(stem_of(rawlog) + ".truth.tum", path);
   if (!truth.landmarks.empty())
     replace_file(stem_of(rawlog) + ".landmarks.csv", landmarks_text(truth.landmarks));

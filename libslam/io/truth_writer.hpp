@@ -11,9 +11,6 @@ namespace libslam {
 /// `id,x,y`, with `,z` where landmarks have a height; numbers read back bit for bit.
 std::string landmarks_text(const std::vector<TrueLandmark>& landmarks);
 
-/// A path in the plane or in space as TUM rows; empty for an empty path.
-std::string path_text(const Trajectory& path);
-
 /// `t1 t2 x y z roll pitch yaw`; numbers read back bit for bit.
 std::string relations_text(const std::vector<PoseRelation>& relations);
 

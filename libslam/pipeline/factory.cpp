@@ -148,6 +148,7 @@ EkfSlamParts make_filter_parts(const Parameters& p, const TrueState* truth) {
   }
   parts.frame = make_error_frame(p.filter.error_frame);
   parts.linearization = make_linearization_point(p, truth);
+  if (p.filter.update_linearizations > 1) parts.iteration.emplace(p.filter.update_linearizations);
   parts.noise = make_noise_policy(p);
   parts.registry = LandmarkRegistry(
       p.association.confirm_after, p.association.prune_after,
@@ -155,6 +156,9 @@ EkfSlamParts make_filter_parts(const Parameters& p, const TrueState* truth) {
       p.association.forget_after);
   if (p.policies.implied_input.enabled)
     parts.implied_input.emplace(p.policies.implied_input.probability);
+  if (p.filter.delayed_pose_distance > 0.0)
+    parts.delayed.emplace(DelayedPoseSpacing{p.filter.delayed_pose_distance,
+                                             p.filter.delayed_pose_turn_deg * kPi / 180.0});
   const BlockSpec pose = parts.motion->pose_spec();
   parts.map = make_map_start(p.map);
   if (parts.map && !parts.map->at_saved_pose) parts.start = start_pose(pose, p.map);

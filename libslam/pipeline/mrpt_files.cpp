@@ -11,9 +11,9 @@ namespace libslam {
 
 void MrptFiles::keep(const StepRecord& record, const mrpt::obs::CSensoryFrame::Ptr& frame) {
   if (record.spatial)
-    simple_map_.add(*record.spatial, frame);
+    simple_map_.add(*record.spatial, frame, record.time);
   else
-    simple_map_.add(record.pose, record.cov, frame);
+    simple_map_.add(record.pose, record.cov, frame, record.time);
 }
 
 std::optional<ReportPicture> MrptFiles::render_grid() {

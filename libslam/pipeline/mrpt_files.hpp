@@ -23,6 +23,8 @@ class MrptFiles {
  public:
   /// Keeps the frame, if it is a key frame. It must not be changed afterwards.
   void keep(const StepRecord& record, const mrpt::obs::CSensoryFrame::Ptr& frame);
+  /// Moves the key frames to where the robot is now known to have been (a path in the plane).
+  void correct(const Trajectory& path) { simple_map_.correct(path); }
   /// Renders the grid of what was kept; a picture of it for the report, or nothing.
   std::optional<ReportPicture> render_grid();
   /// Writes the files into a run directory that holds trajectory.csv. Throws std::runtime_error

@@ -92,6 +92,10 @@ class Run {
   RunSummary finish() {
     save_map();
     const LandmarkMap map = finite_landmarks();
+    if (auto smoothed = pipeline_.filter().smoothed_path()) {
+      mrpt_files_.correct(*smoothed);
+      recorder_.add_smoothed_path(std::move(*smoothed));
+    }
     if (request_.parameters.output.mrpt_files)
       if (auto picture = mrpt_files_.render_grid()) recorder_.add_picture(std::move(*picture));
     RunSummary summary =
@@ -208,7 +212,7 @@ class Run {
     warn_of_unused_sightings(warnings);
     fill_timing(summary);
     summary.health.features = pipeline_.frontend().figures();
-    const Eigen::MatrixXd cov = pipeline_.filter().state().full_covariance();
+    const Eigen::MatrixXd cov = pipeline_.filter().covariance();
     if (cov.rows() <= kLargestSpectrum && cov.allFinite())
       summary.health.min_eigenvalue =
           Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(cov, Eigen::EigenvaluesOnly)

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include <mrpt/math/TPose2D.h>
 
@@ -71,6 +72,16 @@ std::optional<RelationErrors> compare_relations(std::span<const EstimatedPose> p
   errors.rot_mean_deg = rotation.mean;
   errors.rot_std_deg = rotation.deviation();
   return errors;
+}
+
+std::optional<RelationErrors> compare_relations(const Trajectory& path,
+                                                std::span<const PoseRelation> relations) {
+  std::vector<EstimatedPose> poses(path.times.size());
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    poses[i].time = path.times[i];
+    poses[i].pose = path.poses[i];
+  }
+  return compare_relations(poses, relations);
 }
 
 }  // namespace libslam

@@ -28,4 +28,8 @@ struct RelationErrors {
 std::optional<RelationErrors> compare_relations(std::span<const EstimatedPose> path,
                                                 std::span<const PoseRelation> relations);
 
+/// The same of a path with times.
+std::optional<RelationErrors> compare_relations(const Trajectory& path,
+                                                std::span<const PoseRelation> relations);
+
 }  // namespace libslam

@@ -87,16 +87,21 @@ std::string path_card(const TruthComparison& truth) {
   return card.row("matched poses", std::to_string(path.poses)).html();
 }
 
+void add_relations(Card& card, const std::string& path, const RelationErrors& errors) {
+  card.row(path + ", translation", format_figure(errors.trans_mean_m, "m") + " \u00b1 " +
+                                       format_figure(errors.trans_std_m, "m"))
+      .row(path + ", rotation", format_figure(errors.rot_mean_deg, "\u00b0") + " \u00b1 " +
+                                    format_figure(errors.rot_std_deg, "\u00b0"));
+}
+
 std::string relations_card(const TruthComparison& truth) {
   if (!truth.relations) return "";
-  const RelationErrors& errors = *truth.relations;
-  return Card("Path against relations")
-      .row("translation", format_figure(errors.trans_mean_m, "m") + " \u00b1 " +
-                              format_figure(errors.trans_std_m, "m"))
-      .row("rotation", format_figure(errors.rot_mean_deg, "\u00b0") + " \u00b1 " +
-                           format_figure(errors.rot_std_deg, "\u00b0"))
-      .row("matched / unmatched",
-           std::to_string(errors.matched) + " / " + std::to_string(errors.unmatched))
+  Card card("Path against relations");
+  if (truth.relations_smoothed) add_relations(card, "smoothed", *truth.relations_smoothed);
+  add_relations(card, "on line", *truth.relations);
+  return card
+      .row("matched / unmatched", std::to_string(truth.relations->matched) + " / " +
+                                      std::to_string(truth.relations->unmatched))
       .html();
 }
 

@@ -134,6 +134,8 @@ Json truth_to_json(const TruthComparison& truth) {
   if (truth.nees) write_nees(out, *truth.nees);
   if (truth.map) write_map(out, *truth.map);
   if (truth.relations) write_relations(out["relations"], *truth.relations);
+  if (truth.relations_smoothed)
+    write_relations(out["relations_smoothed"], *truth.relations_smoothed);
   for (const auto& [name, error] : truth.calibration_error) out["calibration_error"][name] = error;
   return out;
 }
@@ -155,6 +157,8 @@ TruthComparison truth_from_json(const Json& object) {
   }
   if (const auto relations = object.find("relations"); relations != object.end())
     truth.relations = read_relations(*relations);
+  if (const auto relations = object.find("relations_smoothed"); relations != object.end())
+    truth.relations_smoothed = read_relations(*relations);
   if (const auto errors = object.find("calibration_error"); errors != object.end())
     errors->get_to(truth.calibration_error);
   return truth;

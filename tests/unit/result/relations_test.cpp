@@ -60,6 +60,17 @@ TEST(Relations, OfPosesOfOneTimeTheLastCounts) {
   EXPECT_EQ(errors->trans_mean_m, 0.0);
 }
 
+TEST(Relations, OfASmoothedPath) {
+  const Trajectory path{{0, 1}, {{0, 0, 0}, {1.25, 0, 0}}, {}};
+  const std::vector<PoseRelation> relations{{0, 1, {1, 0, 0}}};
+  TruthComparison comparison;
+  comparison.relations_smoothed = compare_relations(path, relations);
+  ASSERT_TRUE(comparison.relations_smoothed);
+  EXPECT_NEAR(comparison.relations_smoothed->trans_mean_m, 0.25, 1e-12);
+  const auto json = truth_to_json(comparison);
+  EXPECT_EQ(truth_from_json(json).relations_smoothed->trans_mean_m, 0.25);
+}
+
 TEST(Relations, PartOfTheComparisonAndOfItsJson) {
   GroundTruth truth;
   EXPECT_TRUE(truth.empty());

@@ -25,9 +25,7 @@ using mrpt::obs::CObservation2DRangeScan;
 template <typename Visit>
 void for_each_pair(const CSimpleMap& map, Visit&& visit) {
   for (std::size_t i = 0; i < map.size(); ++i) {
-    mrpt::poses::CPose3DPDF::Ptr pose;
-    mrpt::obs::CSensoryFrame::Ptr frame;
-    map.get(i, pose, frame);
+    const auto [pose, frame] = map.get(i);
     if (pose && frame) visit(pose->getMeanVal(), *frame);
   }
 }

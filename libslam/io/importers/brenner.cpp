@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include <libslam/io/importers/brenner.hpp>
 #include <libslam/io/input_error.hpp>
 #include <libslam/io/input_file.hpp>
@@ -14,8 +16,9 @@ constexpr double kResolution = 0.006135923151543, kMountAngle = 0.06981317;
 /// Opens a file of rows that begin with `mark`.
 class MarkedRows {
  public:
-  MarkedRows(const std::string& directory, const std::string& name, const char* mark)
-      : row_(find_input_file(directory, name)), mark_(mark) {}
+  /// `shift` [s] is added to the times.
+  MarkedRows(const std::string& directory, const std::string& name, const char* mark, double shift)
+      : row_(find_input_file(directory, name)), mark_(mark), shift_(shift) {}
 
   bool next() {
     if (!row_.next()) return false;
@@ -23,47 +26,58 @@ class MarkedRows {
     return true;
   }
   const TextReader& row() const { return row_; }
-  double time() const { return kMilli * row_.number(1); }
+  double time() const { return kMilli * row_.number(1) + shift_; }
 
  private:
   TextReader row_;
   std::string mark_;
+  double shift_;
 };
 
-void read_motors(const std::string& directory, const BrennerOptions& options, ImportedLog& log) {
-  MarkedRows rows(directory, "robot4_motors.txt", "M");  // M t left . . . right . . .
+/// What brings the clocks together [s]; never to before the start, where no time stamp is.
+struct ClockShifts {
+  explicit ClockShifts(const BrennerOptions& options)
+      : ticks(std::max({0.0, options.scan_delay, options.camera_delay})),
+        scans(ticks - options.scan_delay),
+        camera(ticks - options.camera_delay) {}
+  double ticks, scans, camera;
+};
+
+void read_motors(const std::string& directory, const BrennerOptions& options, double shift,
+                 ImportedLog& log) {
+  MarkedRows rows(directory, "robot4_motors.txt", "M", shift);  // M t left . . . right . . .
   const Eigen::Vector2d metres_per_tick = Eigen::Vector2d::Constant(options.metres_per_tick);
   while (rows.next())
     log.add_ticks(rows.row(), rows.time(), {2, 6}, metres_per_tick, options.track_width);
   if (log.odometry.empty()) throw InputError(rows.row().file() + ": holds no readings");
 }
 
-void read_scans(const std::string& directory, double delay, ImportedLog& log) {
+void read_scans(const std::string& directory, double shift, ImportedLog& log) {
   log.laser.first_bearing = -kResolution * (kBeams / 2) - kMountAngle;
   log.laser.resolution = kResolution;
   log.laser.max_range = kMaxRange;
   log.laser.T_robot_sensor = log.T_robot_sensor;
-  MarkedRows rows(directory, "robot4_scan.txt", "S");  // S t 660 ranges
+  MarkedRows rows(directory, "robot4_scan.txt", "S", shift);  // S t 660 ranges
   while (rows.next()) {
     if (rows.row().integer(2) != kBeams || rows.row().columns() != kBeams + 3)
       rows.row().reject("a scan has 660 ranges");
-    log.add_laser_scan(rows.row(), rows.time() - delay, 3, kMilli);
+    log.add_laser_scan(rows.row(), rows.time(), 3, kMilli);
   }
 }
 
-void read_truth(const std::string& directory, double delay, ImportedLog& log) {
+void read_truth(const std::string& directory, double shift, ImportedLog& log) {
   Trajectory& path = log.truth.path;
   path.has_heading = false;
   path.point_on_robot = {kLaserAhead, 0.0};
-  MarkedRows positions(directory, "robot4_reference.txt", "P");  // P t x y
+  MarkedRows positions(directory, "robot4_reference.txt", "P", shift);  // P t x y
   while (positions.next()) {
     const TextReader& row = positions.row();
-    const double time = positions.time() - delay;
+    const double time = positions.time();
     if (!path.times.empty() && time < path.times.back()) row.reject("time goes backwards");
     path.times.push_back(time);
     path.poses.emplace_back(kMilli * row.number(2), kMilli * row.number(3), 0.0);
   }
-  MarkedRows cylinders(directory, "robot_arena_landmarks.txt", "L");  // L C x y diameter
+  MarkedRows cylinders(directory, "robot_arena_landmarks.txt", "L", 0.0);  // L C x y diameter
   while (cylinders.next()) {
     const TextReader& row = cylinders.row();
     log.truth.landmarks.push_back(
@@ -79,9 +93,10 @@ ImportedLog import_brenner(const std::string& directory, const BrennerOptions& o
   ImportedLog log;
   log.scenario = "LEGO robot of the SLAM lectures (Brenner)";
   log.T_robot_sensor = {kLaserAhead, 0.0, 0.0};
-  read_motors(directory, options, log);
-  read_scans(directory, options.scan_delay, log);
-  read_truth(directory, options.camera_delay, log);
+  const ClockShifts shift(options);
+  read_motors(directory, options, shift.ticks, log);
+  read_scans(directory, shift.scans, log);
+  read_truth(directory, shift.camera, log);
   log.parameters["track_width"] = options.track_width;
   log.parameters["scan_delay"] = options.scan_delay;
   log.parameters["camera_delay"] = options.camera_delay;

@@ -10,6 +10,7 @@
 #include <libslam/io/importers/carmen.hpp>
 #include <libslam/io/importers/mended_clock.hpp>
 #include <libslam/io/input_error.hpp>
+#include <libslam/io/text_reader.hpp>
 #include <libslam/result/relations.hpp>
 
 #include "data_directory.hpp"
@@ -273,29 +274,55 @@ std::vector<EstimatedPose> corrected(const std::vector<EstimatedPose>& path,
     if (next < reference.times.size() && std::abs(reference.times[next] - step.time) < 1e-5)
       T_map_odometry = pose(reference.poses[next++]) + (-pose(step.pose));
     const mrpt::poses::CPose2D at = T_map_odometry + pose(step.pose);
-    if (next > 0) out.push_back({step.index, step.time, {at.x(), at.y(), at.phi()}, step.cov});
+    if (next > 0) out.push_back({step.step, step.time, {at.x(), at.y(), at.phi()}, step.cov});
   }
   EXPECT_EQ(next, reference.times.size());
   return out;
 }
 
+/// The same poses as the data set ties them to scans: by time, to six digits.
+Trajectory keyframes(const std::string& csv, const std::vector<EstimatedPose>& path) {
+  Trajectory reference;
+  TextReader row(csv);  // scan_index, x, y, theta, difference of the ranges
+  while (row.next()) {
+    reference.times.push_back(path.at(static_cast<std::size_t>(row.integer(0))).time);
+    reference.poses.emplace_back(row.number(1), row.number(2), row.number(3));
+  }
+  return reference;
+}
+
+struct RelationsOfCorrected {
+  const char* log;
+  int poses;
+  double trans_mean, trans_std, rot_mean, rot_std;  // check values of data/carmen/README.md
+  double our_trans_mean;
+};
+
+// The check values are those of the key frames tied by time. 170 of the 910 of Intel sit one or two
+// scans beside their own, which costs a fifth of the accuracy; tied by their ranges they fit
+// better.
 TEST_F(Carmen, CorrectedLogsAreAGoodReference) {
   const std::string data = data_set("carmen");
   if (data.empty()) GTEST_SKIP() << "data set carmen is not there";
-  for (const auto& [log, poses, trans, rot] :
-       {std::tuple("intel", 910, 0.050, 2.35), std::tuple("aces", 440, 0.049, 1.06)}) {
+  for (const RelationsOfCorrected& known :
+       {RelationsOfCorrected{"intel", 910, 0.050, 0.053, 2.35, 2.81, 0.0424},
+        RelationsOfCorrected{"aces", 440, 0.049, 0.049, 1.06, 1.50, 0.0493}}) {
     CarmenOptions options;
-    const std::string stem = data + "/" + log + "/" + log;
+    const std::string stem = data + "/" + known.log + "/" + known.log;
     options.reference = stem + "-corrected.log.gz";
-    EXPECT_EQ(import_carmen(stem + ".clf.gz", rawlog(), options).reference_poses, poses);
+    EXPECT_EQ(import_carmen(stem + ".clf.gz", rawlog(), options).reference_poses, known.poses);
     const GroundTruth truth = read_truth(find_truth(rawlog()));
-    const auto errors =
-        compare_relations(corrected(odometry_path(rawlog()), truth.path), truth.relations);
-    ASSERT_TRUE(errors);
-    std::cout << log << ": " << errors->trans_mean_m << " +- " << errors->trans_std_m << " m, "
-              << errors->rot_mean_deg << " +- " << errors->rot_std_deg << " deg\n";
-    EXPECT_NEAR(errors->trans_mean_m, trans, 0.002);
-    EXPECT_NEAR(errors->rot_mean_deg, rot, 0.05);
+    const auto path = odometry_path(rawlog());
+    const auto by_time = compare_relations(
+        corrected(path, keyframes(stem + "_corrected_keyframes.csv", path)), truth.relations);
+    ASSERT_TRUE(by_time);
+    EXPECT_NEAR(by_time->trans_mean_m, known.trans_mean, 5e-4);
+    EXPECT_NEAR(by_time->trans_std_m, known.trans_std, 5e-4);
+    EXPECT_NEAR(by_time->rot_mean_deg, known.rot_mean, 5e-3);
+    EXPECT_NEAR(by_time->rot_std_deg, known.rot_std, 5e-3);
+    const auto by_ranges = compare_relations(corrected(path, truth.path), truth.relations);
+    ASSERT_TRUE(by_ranges);
+    EXPECT_NEAR(by_ranges->trans_mean_m, known.our_trans_mean, 5e-5);
   }
 }
 

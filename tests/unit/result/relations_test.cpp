@@ -50,7 +50,7 @@ TEST(Relations, TimesMustMeetAPose) {
   EXPECT_EQ(errors->unmatched, 1);
   EXPECT_EQ(errors->trans_mean_m, 0.0);
   EXPECT_FALSE(compare_relations(path, std::vector<PoseRelation>{{7, 8, {1, 0, 0}}}));
-  EXPECT_FALSE(compare_relations({}, std::vector<PoseRelation>{{0, 1, {1, 0, 0}}}));
+  EXPECT_FALSE(compare_relations(path_of({}), std::vector<PoseRelation>{{0, 1, {1, 0, 0}}}));
 }
 
 TEST(Relations, OfPosesOfOneTimeTheLastCounts) {

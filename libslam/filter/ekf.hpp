@@ -63,8 +63,14 @@ class Ekf {
                      std::span<const LinearizedMeasurement> measurements,
                      std::span<const BlockId> considered = {});
 
-  /// After a correction that was applied, with the same measurements: what it left behind of each,
-  /// without the position of its feature. Exact where no block was considered.
+  /// The two halves of `correct`. `weigh` does not change the state and may be repeated, say with
+  /// another R; false: S is not positive definite.
+  bool weigh(GaussianState& state, std::span<const LinearizedMeasurement> measurements);
+  /// After a `weigh` that succeeded.
+  Correction apply(GaussianState& state, BlockId pose, std::span<const BlockId> considered = {});
+
+  /// After `weigh` or a correction that was applied, with the same measurements: each of them seen
+  /// through the S of all, without the position of its feature.
   void look_back(std::span<const LinearizedMeasurement> measurements, std::vector<Postfit>& out);
   /// The same of one block: what the measurements said about it.
   BlockEvidence look_back(std::span<const LinearizedMeasurement> measurements, BlockId block,
@@ -81,7 +87,7 @@ class Ekf {
   double squared_distance(Eigen::Index m);
 
   void reserve_divided(Eigen::Index m);
-  void divide(const MeasurementMatrix& cov, Eigen::Index row, Eigen::Index c, Eigen::Index m);
+  void invert_factor(Eigen::Index m);
 
   std::unique_ptr<ErrorFrame> frame_;
   std::vector<PlacedJacobian> placed_;
@@ -89,8 +95,11 @@ class Ekf {
   std::vector<Eigen::Index> considered_;
   std::vector<MeasurementMatrix> own_;  // diagonal blocks of S
   Eigen::MatrixXd s_;
-  Eigen::MatrixXd divided_;  // L^-1 times R of one measurement, or the columns of one block
-  Eigen::VectorXd nu_, white_, delta_;
+  Eigen::MatrixXd divided_;    // L^-T, or L^-1 times the columns of one block; whole tiles
+  Eigen::MatrixXd diagonals_;  // of S^-1: the main one, the one below it, ...
+  Eigen::VectorXd nu_, white_, weighted_, delta_;
+  Eigen::Index weighed_ = 0;  // rows
+  double nis_ = 0.0;
 };
 
 }  // namespace libslam

@@ -160,7 +160,7 @@ UpdateOutcome EkfSlam::update(std::span<const Feature> features) {
   associate(features);
   if (parts_.disturbance) respond(features, outcome);
   if (parts_.implied_input) reject_impossible(features, outcome);
-  correct(features, outcome);
+  correct(outcome);
   add_landmarks(features, outcome);
   return outcome;
 }
@@ -200,20 +200,28 @@ void EkfSlam::linearize_pairs(std::span<const Feature> features) {
   if (parts_.disturbance || parts_.implied_input) linearize(Outcome::kGated);
 }
 
-void EkfSlam::correct(std::span<const Feature> features, UpdateOutcome& outcome) {
+bool EkfSlam::weigh() {
+  if (!ekf_.weigh(state_, accepted())) return false;
+  if (!parts_.noise || disturbed()) return true;
+  for (;;) {
+    ekf_.look_back(accepted(), postfits_);
+    for (std::size_t i = 0; i < used_.size(); ++i) postfits_[i].feature = used_[i];
+    if (!parts_.noise->observe(adapted_, postfits_)) return true;
+    for (std::size_t i = 0; i < used_.size(); ++i) measured_[i].cov = adapted_[used_[i]].cov;
+    if (!ekf_.weigh(state_, accepted())) return false;
+  }
+}
+
+void EkfSlam::correct(UpdateOutcome& outcome) {
   const PhaseTimer timer(times_, Phase::kUpdate);
   const Eigen::Vector2d before = state_.estimate(pose_).head<2>();
-  const Correction correction = ekf_.correct(state_, pose_, accepted(), considered());
+  Correction correction;
+  if (!used_.empty() && weigh()) correction = ekf_.apply(state_, pose_, considered());
   if (correction.applied) {
     linearizer_.corrected(state_, pose_, before);
     outcome.accepted = static_cast<int>(used_.size());
     outcome.nis = correction.nis;
     outcome.nis_dof = correction.dof;
-    if (parts_.noise && !disturbed()) {
-      ekf_.look_back(accepted(), postfits_);
-      for (std::size_t i = 0; i < used_.size(); ++i) postfits_[i].feature = used_[i];
-      parts_.noise->observe(features, postfits_);
-    }
     if (parts_.process) learn_process_noise();
   } else {
     // An innovation covariance that is not positive definite: nothing was used.

@@ -8,6 +8,7 @@
 
 #include <libslam/campaign/recovery.hpp>
 #include <libslam/campaign/simulated_run.hpp>
+#include <libslam/pipeline/landmark_identity.hpp>
 #include <libslam/pipeline/mrpt_filter.hpp>
 #include <libslam/pipeline/pipeline.hpp>
 #include <libslam/pipeline/simulation.hpp>
@@ -73,8 +74,7 @@ class Lane {
  public:
   Lane(const Variant& variant, const TrueState& truth, double diverged_beyond,
        const KidnapParameters& kidnap)
-      : identity_(variant.parameters.association.uses_identities() ? LandmarkIdentity::known
-                                                                   : LandmarkIdentity::unknown),
+      : identity_(landmark_identity(variant.parameters)),
         diverged_beyond_(diverged_beyond),
         recovery_(kidnap) {
     attempt([&] { contestant_.emplace(variant, truth); });

@@ -259,6 +259,17 @@ void EkfSlam::add_landmarks(std::span<const Feature> features, UpdateOutcome& ou
   if (landmarks_given_ && !given_up.empty()) give_landmarks(true);
 }
 
+void EkfSlam::remember_pose(double time) {
+  if (!parts_.delayed) return;
+  const PhaseTimer timer(times_, Phase::kAugment);
+  parts_.delayed->remember(state_, pose_, time);
+}
+
+std::optional<Trajectory> EkfSlam::smoothed_path() const {
+  if (!parts_.delayed) return std::nullopt;
+  return parts_.delayed->path(state_);
+}
+
 std::vector<AdaptedNoise> EkfSlam::noise() const {
   std::vector<AdaptedNoise> all;
   if (parts_.noise) all = parts_.noise->noise();

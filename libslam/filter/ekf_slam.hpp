@@ -16,6 +16,7 @@
 #include <libslam/data/phase_times.hpp>
 #include <libslam/data/step_record.hpp>
 #include <libslam/filter/calibration_states.hpp>
+#include <libslam/filter/delayed_poses.hpp>
 #include <libslam/filter/displacement_update.hpp>
 #include <libslam/filter/disturbance_response.hpp>
 #include <libslam/filter/ekf.hpp>
@@ -44,6 +45,7 @@ struct EkfSlamParts {
   std::unique_ptr<ProcessScale> process;           ///< null: Q as the motion model says
   std::optional<DisturbanceResponse> disturbance;  ///< absent: every observation is believed
   std::optional<ImpliedInput> implied_input;       ///< absent: any motion is possible
+  std::optional<DelayedPoses> delayed;             ///< absent: the past is forgotten
   LandmarkRegistry registry{1, 0};
   std::optional<MapStart> map;  ///< to start in; needs no point of linearization but the estimate
   BlockVector start;  ///< start pose, storage of the motion model's pose; empty: the origin
@@ -74,6 +76,13 @@ class EkfSlam {
   /// Associates the features of one observation, corrects, and adds the new landmarks; or measures
   /// the displacement since the reading before, gates and corrects.
   UpdateOutcome update(std::span<const Feature> features);
+
+  /// The end of a step at `time` [s]: its pose becomes part of the smoothed path. Nothing where the
+  /// past is forgotten.
+  void remember_pose(double time);
+  /// The path of all steps remembered, given everything known now; nothing where the past is
+  /// forgotten.
+  std::optional<Trajectory> smoothed_path() const;
 
   /// Nothing is known of the pose: it is searched in the map. Throws std::invalid_argument if the
   /// filter does not respond to disturbances.

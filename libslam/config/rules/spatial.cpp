@@ -20,6 +20,10 @@ void check_velocity_source(const Parameters& p, Conflicts& conflicts) {
 }
 
 void check_space(const Parameters& p, Conflicts& conflicts) {
+  if (p.filter.delayed_pose_distance > 0.0) {
+    conflicts.push_back({{"filter.delayed_pose_distance", "motion.model"},
+                         "poses of the past are kept in the plane alone"});
+  }
   if (p.measurement.model != "stereo_point" || p.measurement.stereo.landmark_dimension != 3) {
     conflicts.push_back(
         {{"motion.model", "measurement.model", "measurement.stereo.landmark_dimension"},

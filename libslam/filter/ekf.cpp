@@ -164,15 +164,37 @@ Correction Ekf::correct(GaussianState& state, BlockId pose,
 
 /// L^-T, upper triangular, in whole tiles; what stands before a tile's own columns is zero.
 void Ekf::invert_factor(Index m) {
-  divided_.topLeftCorner(padded(m), m).setIdentity();
+  std::fill_n(divided_.data(), divided_.outerStride() * m, 0.0);
+  divided_.diagonal().head(m).setOnes();
   for (Index first = 0; first < m; first += kKernelTile)
     symmetric_kernels().front().divide({&divided_(first, first), divided_.outerStride(),
                                         std::min<Index>(kKernelTile, m - first), &s_(first, first),
                                         s_.outerStride(), m - first});
 }
 
-// S^-1 = L^-T L^-1. Of its blocks only those on the diagonal are needed, hence only some of its
-// diagonals: sums of products of neighbours within the columns of L^-T.
+/// S^-1 nu and the first kDiagonals diagonals of S^-1 = L^-T L^-1: sums of products of neighbours
+/// within the columns of L^-T, four rows at a time.
+template <int kDiagonals>
+void Ekf::invert_blocks(Index m) {
+  constexpr int kLanes = 4;
+  using Lanes = Eigen::Array<double, kLanes, 1>;
+  for (Index r = 0; r < m; r += kLanes) {
+    Lanes weighted = Lanes::Zero();
+    std::array<Lanes, kDiagonals> sums;
+    sums.fill(Lanes::Zero());
+    for (Index k = r; k < m; ++k) {
+      const double* column = &divided_(r, k);
+      const Lanes x = Eigen::Map<const Lanes>(column);
+      weighted += white_[k] * x;
+      for (std::size_t b = 0; b < kDiagonals; ++b)
+        sums[b] += x * Eigen::Map<const Lanes>(column + b);
+    }
+    weighted_.segment<kLanes>(r) = weighted;
+    for (std::size_t b = 0; b < kDiagonals; ++b)
+      diagonals_.col(static_cast<Index>(b)).segment<kLanes>(r) = sums[b];
+  }
+}
+
 void Ekf::look_back(std::span<const LinearizedMeasurement> measurements,
                     std::vector<Postfit>& out) {
   const Index m = weighed_;
@@ -181,22 +203,10 @@ void Ekf::look_back(std::span<const LinearizedMeasurement> measurements,
   Index widest = 0;
   for (const auto& measurement : measurements)
     widest = std::max(widest, measurement.innovation.size());
-  constexpr int kLanes = 4;
-  for (Index r = 0; r < m; r += kLanes) {
-    Eigen::Array4d weighted = Eigen::Array4d::Zero();
-    std::array<Eigen::Array4d, kMaxMeasurementDimension> sums;
-    sums.fill(Eigen::Array4d::Zero());
-    for (Index k = r; k < m; ++k) {
-      const double* column = &divided_(r, k);
-      const Eigen::Array4d x = Eigen::Map<const Eigen::Array4d>(column);
-      weighted += white_[k] * x;
-      for (Index b = 0; b < widest; ++b)
-        sums[static_cast<std::size_t>(b)] += x * Eigen::Map<const Eigen::Array4d>(column + b);
-    }
-    weighted_.segment<kLanes>(r) = weighted;
-    for (Index b = 0; b < widest; ++b)
-      diagonals_.col(b).segment<kLanes>(r) = sums[static_cast<std::size_t>(b)];
-  }
+  if (widest <= 2)
+    invert_blocks<2>(m);
+  else
+    invert_blocks<kMaxMeasurementDimension>(m);
   out.resize(measurements.size());
   Index row = 0;
   for (std::size_t i = 0; i < measurements.size(); ++i) {

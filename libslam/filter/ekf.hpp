@@ -88,6 +88,8 @@ class Ekf {
 
   void reserve_divided(Eigen::Index m);
   void invert_factor(Eigen::Index m);
+  template <int kDiagonals>
+  void invert_blocks(Eigen::Index m);
 
   std::unique_ptr<ErrorFrame> frame_;
   std::vector<PlacedJacobian> placed_;

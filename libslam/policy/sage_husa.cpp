@@ -40,6 +40,13 @@ void divide(const MeasurementMatrix& lower, Matrix&& m) {
     }
 }
 
+/// sum += x x^T / kappa - expected; plain loops for the same reason.
+void add_square(const MeasurementVector& x, double kappa, const MeasurementMatrix& expected,
+                MeasurementMatrix& sum) {
+  for (Index c = 0; c < x.size(); ++c)
+    for (Index r = 0; r < x.size(); ++r) sum(r, c) += x[r] * x[c] / kappa - expected(r, c);
+}
+
 [[noreturn]] void refuse(const std::string& what) {
   throw std::invalid_argument("noise adaptation: " + what);
 }
@@ -184,9 +191,8 @@ bool SageHusa::observe(std::span<Feature> features, std::span<const Postfit> acc
     Group& group = groups_[group_of_[postfit.feature]];
     const double kappa =
         features[postfit.feature].id == kNoIdentity ? kappa_anonymous_ : kappa_identified_;
-    const MeasurementVector& error = classic_ ? postfit.innovation : postfit.weighted;
-    group.sum += error * error.transpose() / kappa -
-                 (classic_ ? postfit.cov_innovation : postfit.information);
+    add_square(classic_ ? postfit.innovation : postfit.weighted, kappa,
+               classic_ ? postfit.cov_innovation : postfit.information, group.sum);
     ++group.count;
     if (parameters_.bias) channels_[group.channel].sum_innovation += postfit.innovation;
   }

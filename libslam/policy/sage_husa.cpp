@@ -43,8 +43,10 @@ void divide(const MeasurementMatrix& lower, Matrix&& m) {
 /// sum += x x^T / kappa - expected; plain loops for the same reason.
 void add_square(const MeasurementVector& x, double kappa, const MeasurementMatrix& expected,
                 MeasurementMatrix& sum) {
-  for (Index c = 0; c < x.size(); ++c)
-    for (Index r = 0; r < x.size(); ++r) sum(r, c) += x[r] * x[c] / kappa - expected(r, c);
+  for (Index c = 0; c < x.size(); ++c) {
+    const double scaled = x[c] / kappa;
+    for (Index r = 0; r < x.size(); ++r) sum(r, c) += x[r] * scaled - expected(r, c);
+  }
 }
 
 [[noreturn]] void refuse(const std::string& what) {

@@ -23,7 +23,10 @@ class CountingNoise final : public NoisePolicy {
  public:
   explicit CountingNoise(int& observed) : observed_(observed) {}
   void apply(std::span<Feature>) override {}
-  void observe(std::span<const Feature>, std::span<const Postfit>) override { ++observed_; }
+  bool observe(std::span<Feature>, std::span<const Postfit>) override {
+    ++observed_;
+    return false;
+  }
   std::vector<AdaptedNoise> noise() const override { return {}; }
 
  private:

@@ -1,25 +1,19 @@
 // slam-campaign: many simulated runs of many filters, on all cores or on many machines.
 
-#include <atomic>
-#include <csignal>
 #include <iostream>
 #include <string>
 
 #include <CLI/CLI.hpp>
 
 #include <libslam/campaign/campaign_help.hpp>
-#include <libslam/config/config_error.hpp>
-#include <libslam/config/version.hpp>
-#include <libslam/io/input_error.hpp>
 
+#include "../program/program.hpp"
 #include "cluster.hpp"
 #include "session.hpp"
 
 namespace {
 
 using namespace libslam;
-
-std::atomic<bool> g_stop{false};
 
 void add_options(CLI::App& app, Arguments& arguments) {
   app.add_option("config", arguments.config, "The campaign, a .yaml file");
@@ -49,8 +43,7 @@ void add_options(CLI::App& app, Arguments& arguments) {
   auto* quiet = app.add_flag("-q,--quiet", arguments.quiet, "Print errors only");
   app.add_flag("-v,--verbose", arguments.verbose, "Say beforehand what there is to do")
       ->excludes(quiet);
-  app.set_version_flag("--version", "slam-campaign " + std::string(version()) + " (" +
-                                        std::string(git_revision()) + ")");
+  app.set_version_flag("--version", version_line("slam-campaign"));
   app.footer(
       "Example: slam-campaign config/mc_webmap.yaml --runs 50\n"
       "On many machines: mpirun -n 64 slam-campaign config/mc_webmap.yaml --out DIR\n"
@@ -66,16 +59,7 @@ ExitCode act(const CLI::App& app, const Arguments& arguments, const Cluster* clu
     return kDone;
   }
   if (arguments.config.empty()) throw CLI::RequiredError("config");
-  std::signal(SIGINT, [](int) { g_stop = true; });
-  std::signal(SIGTERM, [](int) { g_stop = true; });
-  return run_campaign(arguments, cluster, g_stop);
-}
-
-/// An error of one process must not leave the others waiting.
-ExitCode give_up(const std::exception& error, ExitCode code, const Cluster* cluster) {
-  std::cerr << "slam-campaign: " << error.what() << std::endl;
-  if (cluster != nullptr) Cluster::abort(code);
-  return code;
+  return run_campaign(arguments, cluster, stop_on_signals());
 }
 
 ExitCode parse_and_act(int argc, char** argv, const Cluster* cluster) {
@@ -88,12 +72,10 @@ ExitCode parse_and_act(int argc, char** argv, const Cluster* cluster) {
   } catch (const CLI::ParseError& e) {  // the same in all processes
     if (cluster == nullptr || cluster->rank() == 0) app.exit(e);
     return e.get_exit_code() == 0 ? kDone : kCommandLine;
-  } catch (const ConfigError& e) {
-    return give_up(e, kConfiguration, cluster);
-  } catch (const InputError& e) {
-    return give_up(e, kInput, cluster);
   } catch (const std::exception& e) {
-    return give_up(e, kCommandLine, cluster);
+    const ExitCode code = describe_failure("slam-campaign", e);
+    if (cluster != nullptr) Cluster::abort(code);  // the others must not wait for this one
+    return code;
   }
 }
 

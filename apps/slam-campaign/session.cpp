@@ -152,7 +152,7 @@ ExitCode conclude(const Session& session, const TaskBoard& board, double wall_s)
     std::cerr << trouble;
   else
     std::cout << log;
-  return !complete ? kInterrupted : failures.count > 0 ? kPartly : kDone;
+  return !complete ? kInterrupted : failures.count > 0 ? kIncomplete : kDone;
 }
 
 void announce(const Session& session, const TaskBoard& board) {

@@ -6,18 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "../program/program.hpp"
 #include "cluster.hpp"
 
 namespace libslam {
-
-enum ExitCode {
-  kDone = 0,
-  kCommandLine = 2,
-  kConfiguration = 3,
-  kInput = 4,
-  kPartly = 5,
-  kInterrupted = 7
-};
 
 struct Arguments {
   std::string config, out, help_config;

@@ -10,6 +10,7 @@
 #include <libslam/config/digest.hpp>
 #include <libslam/config/yaml_loader.hpp>
 #include <libslam/pipeline/factory.hpp>
+#include <libslam/pipeline/landmark_identity.hpp>
 #include <libslam/result/atomic_file.hpp>
 
 #include "table.hpp"
@@ -72,9 +73,7 @@ BatchEvaluation evaluate_batch(const std::filesystem::path& directory, const std
   const EkfSlamParts parts = make_filter_parts(parameters);
   const auto begin = std::chrono::steady_clock::now();
   const BatchResult batch = optimize_batch(replay.log, parts, replay.estimate);
-  const LandmarkIdentity identity = parameters.association.uses_identities()
-                                        ? LandmarkIdentity::known
-                                        : LandmarkIdentity::unknown;
+  const LandmarkIdentity identity = landmark_identity(parameters);
   BatchEvaluation run{name, compare_with_batch(replay, batch, truth, identity), 0.0};
   if (on_line_steps > 0)
     run.comparison.on_line = compare_on_line(replay, parts, batch, truth, on_line_steps);

@@ -10,12 +10,13 @@
 
 #include <CLI/CLI.hpp>
 
-#include <libslam/config/version.hpp>
 #include <libslam/config/yaml_loader.hpp>
 #include <libslam/io/exporters/kitti_poses.hpp>
 #include <libslam/io/truth_reader.hpp>
+#include <libslam/pipeline/landmark_identity.hpp>
 #include <libslam/result/recorded_run.hpp>
 
+#include "../program/program.hpp"
 #include "batch.hpp"
 #include "table.hpp"
 
@@ -24,8 +25,6 @@ namespace {
 namespace fs = std::filesystem;
 using namespace libslam;
 using evaluate::EvaluatedRun;
-
-enum ExitCode { kDone = 0, kCommandLine = 2, kInput = 4, kIncomplete = 5 };
 
 struct Arguments {
   std::vector<std::string> runs;
@@ -55,8 +54,7 @@ TruthFiles truth_files_for(const RunSummary& summary, const Arguments& arguments
 
 LandmarkIdentity identity_of(const fs::path& directory) {
   const fs::path config = directory / "config.yaml";
-  const bool unknown = fs::exists(config) && !load_yaml(config).association.uses_identities();
-  return unknown ? LandmarkIdentity::unknown : LandmarkIdentity::known;
+  return fs::exists(config) ? landmark_identity(load_yaml(config)) : LandmarkIdentity::known;
 }
 
 /// FIRST:LAST, either may be missing. Throws CLI::ValidationError.
@@ -192,24 +190,18 @@ int main(int argc, char** argv) {
   auto* quiet = app.add_flag("-q,--quiet", arguments.quiet,
                              "Print no table; errors and the exit code remain");
   app.add_flag("-v,--verbose", arguments.verbose, "Print all figures")->excludes(quiet);
-  app.set_version_flag("--version", "slam-evaluate " + std::string(version()) + " (" +
-                                        std::string(git_revision()) + ")");
+  app.set_version_flag("--version", version_line("slam-evaluate"));
   app.footer(
       "Examples: slam-evaluate run1 run2 --truth robot.truth.tum\n"
       "          slam-evaluate run1 --steps 1215:1714 --placement none\n"
       "          slam-evaluate --batch run1\n"
       "Exit codes: 0 done, 2 wrong command line, 4 no run could be read, 5 some figures are "
       "missing.");
-  try {
-    app.parse(argc, argv);
-    if (!arguments.steps.empty()) read_step_window(arguments.steps, arguments.window);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? kDone : kCommandLine;
-  }
-  try {
-    return arguments.batch ? run_batch(arguments) : run(arguments);
-  } catch (const std::exception& error) {
-    std::cerr << "slam-evaluate: " << error.what() << '\n';
-    return kInput;
-  }
+  return run_program(app, argc, argv,
+                     [&] {
+                       if (!arguments.steps.empty())
+                         read_step_window(arguments.steps, arguments.window);
+                       return arguments.batch ? run_batch(arguments) : run(arguments);
+                     },
+                     {kInput, kInput});
 }

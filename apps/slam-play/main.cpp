@@ -1,27 +1,23 @@
 // slam-play: what is in a rawlog; played as fast as possible, in time, or step by step.
 
 #include <cmath>
-#include <csignal>
 #include <cstdio>
 #include <iostream>
 #include <string>
 
 #include <CLI/CLI.hpp>
 #include <mrpt/obs/CActionRobotMovement2D.h>
+#include <mrpt/obs/CActionRobotMovement3D.h>
 #include <nlohmann/json.hpp>
 
-#include <libslam/config/version.hpp>
-#include <libslam/io/input_error.hpp>
 #include <libslam/io/log_inspection.hpp>
 #include <libslam/io/rawlog_player.hpp>
+
+#include "../program/program.hpp"
 
 namespace {
 
 using namespace libslam;
-
-enum ExitCode { kDone = 0, kCommandLine = 2, kInput = 4, kIncomplete = 5, kInterrupted = 7 };
-
-volatile std::sig_atomic_t g_stop = 0;
 
 struct Arguments {
   std::string file, policy = "skip";
@@ -40,6 +36,15 @@ std::string describe(const LogStep& step) {
     motion->poseChange->getMean(d);
     std::snprintf(text, sizeof(text), "  moved %+.4f %+.4f m %+.5f rad in %.4f s", d.x(), d.y(),
                   d.phi(), step.dt);
+    line += text;
+  }
+  const auto spatial =
+      step.action ? step.action->getActionByClass<mrpt::obs::CActionRobotMovement3D>() : nullptr;
+  if (spatial) {
+    const mrpt::poses::CPose3D& d = spatial->poseChange.mean;
+    std::snprintf(text, sizeof(text),
+                  "  moved %+.4f %+.4f %+.4f m, yaw pitch roll %+.5f %+.5f %+.5f rad in %.4f s",
+                  d.x(), d.y(), d.z(), d.yaw(), d.pitch(), d.roll(), step.dt);
     line += text;
   }
   if (!step.frame) return line;
@@ -134,13 +139,14 @@ PlayerOptions player_options(const Arguments& arguments, LogInspection& log) {
     options.pacing.mode = PaceMode::kRealTime;
     options.pacing.factor = arguments.speed;
   }
-  options.pacing.before_step = [](const LogStep&) { return g_stop == 0; };
+  const std::atomic<bool>& stop = stop_on_signals();
+  options.pacing.before_step = [&stop](const LogStep&) { return !stop; };
   if (arguments.step) {
     options.pacing.mode = PaceMode::kStep;
-    options.pacing.before_step = [](const LogStep& step) {
+    options.pacing.before_step = [&stop](const LogStep& step) {
       std::cout << describe(step) << std::endl;
       std::string line;
-      return g_stop == 0 && std::getline(std::cin, line) && line != "q";
+      return !stop && std::getline(std::cin, line) && line != "q";
     };
   }
   return options;
@@ -164,7 +170,7 @@ int play(const Arguments& arguments) {
     for (const auto& warning : input.warnings) std::cerr << "slam-play: " << warning << '\n';
   if (!arguments.quiet && input.warnings_omitted > 0)
     std::cerr << "slam-play: " << input.warnings_omitted << " further warnings\n";
-  if (g_stop != 0) return kInterrupted;
+  if (stop_on_signals()) return kInterrupted;
   return input.incomplete() ? kIncomplete : kDone;
 }
 
@@ -172,9 +178,8 @@ int play(const Arguments& arguments) {
 
 int main(int argc, char** argv) {
   Arguments arguments;
-  CLI::App app{"Shows what is in a rawlog and plays it."};
-  app.set_version_flag("--version", "slam-play " + std::string(version()) + " (" +
-                                        std::string(git_revision()) + ")");
+  CLI::App app{"Shows what is in a rawlog and plays it.", "slam-play"};
+  app.set_version_flag("--version", version_line("slam-play"));
   app.footer(
       "Example:\n  slam-play /usr/share/mrpt/datasets/kf-slam_demo.rawlog\n"
       "Exit codes: 0 sound, 2 command line, 4 rejected, 5 partly unusable, 7 interrupted.");
@@ -189,20 +194,6 @@ int main(int argc, char** argv) {
   app.add_flag("--json", arguments.json, "Print the summary as JSON");
   app.add_flag("--quiet", arguments.quiet, "Print errors only");
   app.add_flag("--verbose", arguments.verbose, "Print every step");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? kDone : kCommandLine;
-  }
-  std::signal(SIGINT, [](int) { g_stop = 1; });
-  std::signal(SIGTERM, [](int) { g_stop = 1; });
-  try {
-    return play(arguments);
-  } catch (const InputError& error) {
-    std::cerr << "slam-play: " << error.what() << '\n';
-    return kInput;
-  } catch (const std::exception& error) {
-    std::cerr << "slam-play: " << error.what() << '\n';
-    return kCommandLine;
-  }
+  return run_program(app, argc, argv, [&] { return play(arguments); },
+                     {kCommandLine, kCommandLine});
 }

@@ -1,32 +1,24 @@
 // slam-simulate: a scenario in; a standard MRPT rawlog, its ground truth and the effective scenario
 // out.
 
-#include <atomic>
-#include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
 #include <string>
-#include <unistd.h>
 #include <vector>
 
 #include <CLI/CLI.hpp>
 
-#include <libslam/config/config_error.hpp>
 #include <libslam/config/help.hpp>
-#include <libslam/config/version.hpp>
-#include <libslam/io/input_error.hpp>
 #include <libslam/pipeline/simulated_drive.hpp>
 #include <libslam/pipeline/simulation.hpp>
+
+#include "../program/program.hpp"
 
 namespace {
 
 namespace fs = std::filesystem;
 using namespace libslam;
-
-enum ExitCode { kDone = 0, kCommandLine = 2, kConfiguration = 3, kInput = 4 };
-
-std::atomic<bool> g_stop{false};
 
 struct Arguments {
   std::string config, out, help_config;
@@ -34,29 +26,6 @@ struct Arguments {
   int seed = 0;
   bool seed_given = false;
   bool force = false, quiet = false, verbose = false, print_config = false;
-};
-
-/// A bar on a terminal; nothing elsewhere.
-class Progress {
- public:
-  explicit Progress(bool quiet) : shows_(!quiet && isatty(STDERR_FILENO) != 0) {}
-  ~Progress() {
-    if (shown_ >= 0) std::fputs("\r\033[K", stderr);
-  }
-  Progress(const Progress&) = delete;
-  Progress& operator=(const Progress&) = delete;
-
-  void show(double fraction) {
-    const int percent = static_cast<int>(100.0 * fraction);
-    if (!shows_ || percent == shown_) return;
-    shown_ = percent;
-    std::fprintf(stderr, "\r[%-40s] %3d %%",
-                 std::string(static_cast<std::size_t>(percent * 2 / 5), '#').c_str(), percent);
-  }
-
- private:
-  bool shows_;
-  int shown_ = -1;
 };
 
 Scenario load(const Arguments& arguments) {
@@ -93,10 +62,10 @@ int simulate(const Arguments& arguments) {
   request.rawlog = rawlog_of(arguments);
   if (fs::exists(request.rawlog) && !arguments.force)
     throw std::runtime_error(request.rawlog.string() + " exists; --force replaces it");
-  request.stop = &g_stop;
+  request.stop = &stop_on_signals();
   DriveSummary summary;
   {
-    Progress progress(arguments.quiet);
+    ProgressBar progress(arguments.quiet);
     request.on_step = [&progress](double fraction) { progress.show(fraction); };
     summary = simulate_drive(request);
   }
@@ -130,8 +99,7 @@ void add_options(CLI::App& app, Arguments& arguments) {
       ->check(CLI::IsMember({"text", "markdown"}));
   app.add_flag("-q,--quiet", arguments.quiet, "Print errors only");
   app.add_flag("-v,--verbose", arguments.verbose, "Print more");
-  app.set_version_flag("--version", "slam-simulate " + std::string(version()) + " (" +
-                                        std::string(git_revision()) + ")");
+  app.set_version_flag("--version", version_line("slam-simulate"));
   app.footer(
       "Example: slam-simulate config/sim_webmap.yaml --seed 7 --out sim1\n"
       "Writes X.rawlog, X.truth.tum, X.truth.csv, X.landmarks.csv, X.truth.json, X.scenario.yaml,\n"
@@ -141,34 +109,18 @@ void add_options(CLI::App& app, Arguments& arguments) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Makes a world, drives a vehicle through it and writes what its sensors say.");
+  CLI::App app("Makes a world, drives a vehicle through it and writes what its sensors say.",
+               "slam-simulate");
   Arguments arguments;
   add_options(app, arguments);
-  try {
-    app.parse(argc, argv);
+  return run_program(app, argc, argv, [&] {
     if (app.count("--help-config") > 0) {
       Scenario scenario;
       const ParameterTable table(scenario);
       std::cout << (arguments.help_config == "markdown" ? help_tables(table) : help_text(table));
-      return kDone;
+      return static_cast<int>(kDone);
     }
     arguments.seed_given = app.count("--seed") > 0;
-    std::signal(SIGINT, [](int) { g_stop = true; });
-    std::signal(SIGTERM, [](int) { g_stop = true; });
     return simulate(arguments);
-  } catch (const CLI::ParseError& e) {
-    return app.exit(e) == 0 ? kDone : kCommandLine;
-  } catch (const ConfigError& e) {
-    std::cerr << "slam-simulate: " << e.what() << '\n';
-    return kConfiguration;
-  } catch (const std::invalid_argument& e) {
-    std::cerr << "slam-simulate: " << e.what() << '\n';
-    return kConfiguration;
-  } catch (const InputError& e) {
-    std::cerr << "slam-simulate: " << e.what() << '\n';
-    return kInput;
-  } catch (const std::exception& e) {
-    std::cerr << "slam-simulate: " << e.what() << '\n';
-    return kCommandLine;
-  }
+  });
 }

@@ -8,6 +8,8 @@
 
 #include <libslam/campaign/recovery.hpp>
 #include <libslam/campaign/simulated_run.hpp>
+#include <libslam/data/step_events.hpp>
+#include <libslam/pipeline/landmark_identity.hpp>
 #include <libslam/pipeline/mrpt_filter.hpp>
 #include <libslam/pipeline/pipeline.hpp>
 #include <libslam/pipeline/simulation.hpp>
@@ -73,8 +75,7 @@ class Lane {
  public:
   Lane(const Variant& variant, const TrueState& truth, double diverged_beyond,
        const KidnapParameters& kidnap)
-      : identity_(variant.parameters.association.uses_identities() ? LandmarkIdentity::known
-                                                                   : LandmarkIdentity::unknown),
+      : identity_(landmark_identity(variant.parameters)),
         diverged_beyond_(diverged_beyond),
         recovery_(kidnap) {
     attempt([&] { contestant_.emplace(variant, truth); });
@@ -127,7 +128,7 @@ class Lane {
       observation_of_pose_.push_back(observations_ - 1);
       recovery_.observe(record.time - path_.front().time, error);
     }
-    if (record.event == "disturbance") ++disturbances_;
+    if (has_event(record.event, "disturbance")) ++disturbances_;
   }
 
   void describe(const GroundTruth& truth, bool with_series, VariantOutcome& outcome) const {

@@ -157,6 +157,30 @@ Correction Ekf::solve(GaussianState& state, std::span<const LinearizedMeasuremen
   return {true, nis, static_cast<int>(m)};
 }
 
+void Ekf::spread(GaussianState& state, BlockId pose, std::span<const BlockId> shadows,
+                 const MatrixRef& root, const VectorRef& white, std::span<const BlockId> kept) {
+  placed_.clear();
+  placed_.reserve(shadows.size());
+  rows_.clear();
+  Index m = 0;
+  for (const BlockId block : shadows) {
+    const Index d = state.size(block);
+    placed_.push_back({state.offset(block), BlockMatrix::Identity(d, d)});
+    rows_.push_back({m, d, std::span(&placed_.back(), 1)});
+    m += d;
+  }
+  if (s_.rows() < m) s_.resize(2 * m, 2 * m);
+  state.covariance().observe(rows_, s_.topLeftCorner(m, m));
+  const Index n = state.dimension();
+  if (delta_.size() < n) delta_.resize(2 * n);
+  considered_.clear();
+  for (const BlockId block : kept)
+    for (Index i = 0; i < state.size(block); ++i) considered_.push_back(state.offset(block) + i);
+  state.covariance().spread(root, white, considered_, delta_.head(n));
+  step_size_ = n;
+  apply(state, pose);
+}
+
 void Ekf::apply(GaussianState& state, BlockId pose) {
   state.covariance().correct(move(state, pose));
 }

@@ -63,6 +63,12 @@ class Ekf {
                      std::span<const LinearizedMeasurement> measurements,
                      std::span<const BlockId> considered = {});
 
+  /// Takes information back: P <- P + B M B^T, delta = B root white, with B the covariance of the
+  /// state with `shadows` (filter/hindsight.hpp) and M = root root^T. The blocks in `kept` do not
+  /// change.
+  void spread(GaussianState& state, BlockId pose, std::span<const BlockId> shadows,
+              const MatrixRef& root, const VectorRef& white, std::span<const BlockId> kept);
+
   /// The two halves of `correct`, for those who look at the step before they take it. `solve`
   /// leaves the state alone; `applied` says whether there is a step.
   Correction solve(GaussianState& state, std::span<const LinearizedMeasurement> measurements,

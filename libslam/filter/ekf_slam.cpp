@@ -2,6 +2,7 @@
 #include <stdexcept>
 #include <string>
 
+#include <libslam/data/step_events.hpp>
 #include <libslam/filter/ekf_slam.hpp>
 #include <libslam/filter/pair_test.hpp>
 
@@ -23,6 +24,11 @@ EkfSlamParts checked(EkfSlamParts parts) {
     throw std::invalid_argument(
         "EkfSlam starts in a map with a measurement model of landmarks, linearized at the "
         "estimate");
+  if (parts.disturbance && parts.disturbance->relocalizes() &&
+      (parts.motion->pose_spec().chart != Chart::kSE2 ||
+       tangent_dimension(parts.measurement->landmark_spec()) != 2))
+    throw std::invalid_argument(
+        "EkfSlam finds a lost pose again in the plane alone, among planar landmarks");
   return parts;
 }
 
@@ -41,7 +47,7 @@ UpdateOutcome& UpdateOutcome::operator+=(const UpdateOutcome& other) {
   gated += other.gated;
   ambiguous += other.ambiguous;
   new_landmarks += other.new_landmarks;
-  if (!other.event.empty()) event = other.event;
+  add_events(event, other.event);
   verdicts.insert(verdicts.end(), other.verdicts.begin(), other.verdicts.end());
   return *this;
 }
@@ -113,7 +119,7 @@ void EkfSlam::propagate(const MotionAction* action) {
   if (parts_.process) scale_process_noise();
   if (!calibration_.empty())
     calibration_.observe(state_, pose_, step_, action->dt, displacement_model());
-  if (disturbed())
+  if (parts_.disturbance)
     parts_.disturbance->moved(state_.estimate(pose_), step_.estimate, step_.cov_noise);
   ekf_.propagate(state_, step_);
   if (parts_.implied_input)
@@ -160,7 +166,9 @@ UpdateOutcome EkfSlam::update(std::span<const Feature> features) {
   associate(features);
   if (parts_.disturbance) respond(features, outcome);
   if (parts_.implied_input) reject_impossible(features, outcome);
+  if (parts_.disturbance && !used_.empty()) parts_.disturbance->open(state_, pose_);
   correct(features, outcome);
+  if (parts_.disturbance && outcome.accepted > 0) reconsider(outcome);
   add_landmarks(features, outcome);
   return outcome;
 }
@@ -260,6 +268,17 @@ void EkfSlam::add_landmarks(std::span<const Feature> features, UpdateOutcome& ou
   const std::vector<BlockId> given_up = parts_.registry.record_update();
   for (const BlockId block : given_up) state_.remove(block);
   if (landmarks_given_ && !given_up.empty()) give_landmarks(true);
+}
+
+void EkfSlam::remember_pose(double time) {
+  if (!parts_.delayed) return;
+  const PhaseTimer timer(times_, Phase::kAugment);
+  parts_.delayed->remember(state_, pose_, time);
+}
+
+std::optional<Trajectory> EkfSlam::smoothed_path() const {
+  if (!parts_.delayed) return std::nullopt;
+  return parts_.delayed->path(state_);
 }
 
 std::vector<AdaptedNoise> EkfSlam::noise() const {

@@ -16,6 +16,7 @@
 #include <libslam/data/phase_times.hpp>
 #include <libslam/data/step_record.hpp>
 #include <libslam/filter/calibration_states.hpp>
+#include <libslam/filter/delayed_poses.hpp>
 #include <libslam/filter/displacement_update.hpp>
 #include <libslam/filter/disturbance_response.hpp>
 #include <libslam/filter/ekf.hpp>
@@ -46,6 +47,7 @@ struct EkfSlamParts {
   std::optional<IteratedUpdate> iteration;         ///< absent: one linearization per correction
   std::optional<DisturbanceResponse> disturbance;  ///< absent: every observation is believed
   std::optional<ImpliedInput> implied_input;       ///< absent: any motion is possible
+  std::optional<DelayedPoses> delayed;             ///< absent: the past is forgotten
   LandmarkRegistry registry{1, 0};
   std::optional<MapStart> map;  ///< to start in; needs no point of linearization but the estimate
   BlockVector start;  ///< start pose, storage of the motion model's pose; empty: the origin
@@ -59,7 +61,8 @@ struct UpdateOutcome {
   int nis_dof = 0;
   int accepted = 0, gated = 0, ambiguous = 0, new_landmarks = 0;
   std::vector<Verdict> verdicts;  ///< one per feature
-  /// What a run should tell: "disturbance", "lost", "relocalized", "impossible_motion".
+  /// What a run should tell: "disturbance", "lost", "relocalized", "impossible_motion", joined as
+  /// data/step_events.hpp says.
   std::string event;
 
   UpdateOutcome& operator+=(const UpdateOutcome& other);
@@ -77,6 +80,13 @@ class EkfSlam {
   /// the displacement since the reading before, gates and corrects.
   UpdateOutcome update(std::span<const Feature> features);
 
+  /// The end of a step at `time` [s]: its pose becomes part of the smoothed path. Nothing where the
+  /// past is forgotten.
+  void remember_pose(double time);
+  /// The path of all steps remembered, given everything known now; nothing where the past is
+  /// forgotten.
+  std::optional<Trajectory> smoothed_path() const;
+
   /// Nothing is known of the pose: it is searched in the map. Throws std::invalid_argument if the
   /// filter does not respond to disturbances.
   void lose_pose();
@@ -84,7 +94,10 @@ class EkfSlam {
   /// every innovation, and none is added (MapStart::landmarks_given); or SLAM again.
   void give_landmarks(bool given);
 
+  /// What is estimated, and shadows of it (filter/hindsight.hpp).
   const GaussianState& state() const { return state_; }
+  /// Of all that is estimated, in state order: full symmetric, without the shadows.
+  Eigen::MatrixXd covariance() const;
   BlockId pose() const { return pose_; }
   const LandmarkRegistry& registry() const { return parts_.registry; }
   const PhaseTimes& times() const { return times_; }
@@ -118,6 +131,7 @@ class EkfSlam {
   void linearize_pairs(std::span<const Feature> features);
   void respond(std::span<const Feature> features, UpdateOutcome& outcome);
   void start_again_at(const FoundPose& found, std::span<const Feature> features);
+  void reconsider(UpdateOutcome& outcome);
   /// Gives up an observation that implies an impossible motion; the landmarks start anew, unless
   /// they are given.
   void reject_impossible(std::span<const Feature> features, UpdateOutcome& outcome);

@@ -1,7 +1,10 @@
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <optional>
 
 #include <mrpt/obs/CActionRobotMovement2D.h>
+#include <mrpt/obs/CActionRobotMovement3D.h>
 #include <mrpt/obs/CObservationBearingRange.h>
 
 #include <libslam/io/log_inspection.hpp>
@@ -54,6 +57,44 @@ void count_sightings(LandmarkStatistics& landmarks, const CObservationBearingRan
   }
 }
 
+/// How far an action moves, in the plane or in space.
+struct Motion {
+  double distance = 0.0, turn = 0.0;     ///< [m], [rad], not negative
+  std::optional<bool> velocities_agree;  ///< with the pose change, where there are any
+  bool has_ticks = false;
+};
+
+Motion motion_of(const mrpt::obs::CActionRobotMovement2D& action, double dt) {
+  mrpt::poses::CPose2D increment;
+  action.poseChange->getMean(increment);
+  Motion motion{increment.norm(), std::abs(increment.phi()), {}, action.hasEncodersInfo};
+  const auto& v = action.velocityLocal;
+  if (action.hasVelocities)
+    motion.velocities_agree = agrees(std::hypot(v.vx, v.vy) * dt, motion.distance) &&
+                              agrees(v.omega * dt, increment.phi());
+  return motion;
+}
+
+Motion motion_of(const mrpt::obs::CActionRobotMovement3D& action, double dt) {
+  const mrpt::poses::CPose3D& increment = action.poseChange.mean;
+  const double cosine = 0.5 * (increment.getRotationMatrix().trace() - 1.0);
+  Motion motion{increment.norm(), std::acos(std::clamp(cosine, -1.0, 1.0)), {}, false};
+  const auto& v = action.velocities;
+  if (v.size() == 6 && std::ranges::all_of(action.hasVelocities, std::identity{}))
+    motion.velocities_agree = agrees(std::hypot(v[0], v[1], v[2]) * dt, motion.distance) &&
+                              agrees(std::hypot(v[3], v[4], v[5]) * dt, motion.turn);
+  return motion;
+}
+
+/// Nothing for an action that does not move the robot.
+std::optional<Motion> motion_of(const mrpt::obs::CActionCollection& action, double dt) {
+  if (const auto planar = action.getActionByClass<mrpt::obs::CActionRobotMovement2D>())
+    return motion_of(*planar, dt);
+  if (const auto spatial = action.getActionByClass<mrpt::obs::CActionRobotMovement3D>())
+    return motion_of(*spatial, dt);
+  return std::nullopt;
+}
+
 }  // namespace
 
 double SensorStatistics::rate() const {
@@ -86,26 +127,18 @@ void LogInspection::observe(const LogStep& step) {
   if (steps_++ == 0) first_time_ = step.time;
   last_time_ = step.time;
   if (!step.action) return;
-  const auto motion = step.action->getActionByClass<mrpt::obs::CActionRobotMovement2D>();
+  const auto motion = motion_of(*step.action, step.dt);
   if (!motion) return;
-  mrpt::poses::CPose2D increment;
-  motion->poseChange->getMean(increment);
-  const double distance = increment.norm(), turn = std::abs(increment.phi());
   ++odometry_.motions;
   odometry_.with_covariance += step.has_motion_covariance ? 1 : 0;
-  odometry_.with_ticks += motion->hasEncodersInfo ? 1 : 0;
-  odometry_.path_length += distance;
-  odometry_.total_turn += turn;
-  if (motion->hasVelocities) {
-    const auto& v = motion->velocityLocal;
-    ++odometry_.with_velocities;
-    if (agrees(std::hypot(v.vx, v.vy) * step.dt, distance) &&
-        agrees(v.omega * step.dt, increment.phi()))
-      ++odometry_.velocities_agree;
-  }
+  odometry_.with_ticks += motion->has_ticks ? 1 : 0;
+  odometry_.path_length += motion->distance;
+  odometry_.total_turn += motion->turn;
+  odometry_.with_velocities += motion->velocities_agree ? 1 : 0;
+  odometry_.velocities_agree += motion->velocities_agree.value_or(false) ? 1 : 0;
   if (step.dt > 0.0) {
-    odometry_.max_speed = std::max(odometry_.max_speed, distance / step.dt);
-    odometry_.max_turn_rate = std::max(odometry_.max_turn_rate, turn / step.dt);
+    odometry_.max_speed = std::max(odometry_.max_speed, motion->distance / step.dt);
+    odometry_.max_turn_rate = std::max(odometry_.max_turn_rate, motion->turn / step.dt);
   }
 }
 

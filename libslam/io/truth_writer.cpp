@@ -1,9 +1,20 @@
 #include <algorithm>
+#include <filesystem>
 
 #include <libslam/io/truth_writer.hpp>
 #include <libslam/map/csv_text.hpp>
+#include <libslam/result/atomic_file.hpp>
+#include <libslam/result/trajectory.hpp>
 
 namespace libslam {
+
+namespace {
+
+std::string stem_of(const std::string& rawlog) {
+  return std::filesystem::path(rawlog).replace_extension().string();
+}
+
+}  // namespace
 
 std::string landmarks_text(const std::vector<TrueLandmark>& landmarks) {
   const bool spatial = std::ranges::any_of(
@@ -18,6 +29,21 @@ std::string landmarks_text(const std::vector<TrueLandmark>& landmarks) {
     text += '\n';
   }
   return text;
+}
+
+void remove_truth_beside(const std::string& rawlog) {
+  std::error_code ignored;
+  for (const char* const ending : {".truth.tum", ".landmarks.csv"})
+    std::filesystem::remove(stem_of(rawlog) + ending, ignored);
+}
+
+void write_truth_beside(const std::string& rawlog, const GroundTruth& truth,
+                        const std::string& notes) {
+  const std::string path = tum_text(truth.path);
+  if (!path.empty()) replace_file(stem_of(rawlog) + ".truth.tum", path);
+  if (!truth.landmarks.empty())
+    replace_file(stem_of(rawlog) + ".landmarks.csv", landmarks_text(truth.landmarks));
+  replace_file(stem_of(rawlog) + ".truth.json", notes);
 }
 
 }  // namespace libslam

@@ -1,5 +1,5 @@
 #pragma once
-// Ground truth as text, in the forms that truth_reader.hpp reads.
+// Ground truth in the forms, and under the names, that truth_reader.hpp reads.
 
 #include <string>
 #include <vector>
@@ -10,5 +10,13 @@ namespace libslam {
 
 /// `id,x,y`, with `,z` where landmarks have a height; numbers read back bit for bit.
 std::string landmarks_text(const std::vector<TrueLandmark>& landmarks);
+
+/// Removes X.truth.tum and X.landmarks.csv of an earlier import beside `rawlog` (X.rawlog).
+void remove_truth_beside(const std::string& rawlog);
+
+/// Writes X.truth.json with `notes` beside `rawlog` (X.rawlog) and, where known, X.truth.tum and
+/// X.landmarks.csv. Throws std::runtime_error if a file cannot be written.
+void write_truth_beside(const std::string& rawlog, const GroundTruth& truth,
+                        const std::string& notes);
 
 }  // namespace libslam

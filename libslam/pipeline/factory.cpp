@@ -155,6 +155,9 @@ EkfSlamParts make_filter_parts(const Parameters& p, const TrueState* truth) {
       p.association.forget_after);
   if (p.policies.implied_input.enabled)
     parts.implied_input.emplace(p.policies.implied_input.probability);
+  if (p.filter.delayed_pose_distance > 0.0)
+    parts.delayed.emplace(DelayedPoseSpacing{p.filter.delayed_pose_distance,
+                                             p.filter.delayed_pose_turn_deg * kPi / 180.0});
   const BlockSpec pose = parts.motion->pose_spec();
   parts.map = make_map_start(p.map);
   if (parts.map && !parts.map->at_saved_pose) parts.start = start_pose(pose, p.map);

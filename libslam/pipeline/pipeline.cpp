@@ -90,6 +90,7 @@ StepRecord Pipeline::update(const LogStep& step) {
         last_update_ += outcome;
       }
   }
+  filter_.remember_pose(step.time);
   StepRecord record = estimate();
   record.index = step.index;
   record.time = step.time;

@@ -14,6 +14,7 @@
 #include <libslam/io/map_file.hpp>
 #include <libslam/io/rawlog_player.hpp>
 #include <libslam/pipeline/frame_picture.hpp>
+#include <libslam/pipeline/landmark_identity.hpp>
 #include <libslam/pipeline/pipeline.hpp>
 #include <libslam/pipeline/process_usage.hpp>
 #include <libslam/pipeline/run.hpp>
@@ -92,13 +93,11 @@ class Run {
   RunSummary finish() {
     save_map();
     const LandmarkMap map = finite_landmarks();
-    // Points of images are numbered as they come.
-    const bool known = request_.parameters.association.uses_identities() &&
-                       request_.parameters.frontend.source != "stereo_images";
     RunSummary summary =
-        recorder_.finish(summarize(), map, request_.truth,
-                         known ? LandmarkIdentity::known : LandmarkIdentity::unknown);
+        recorder_.finish(summarize(), map, request_.truth, landmark_identity(request_.parameters));
     if (request_.parameters.output.mrpt_files) write_mrpt_files(map);
+    if (const auto smoothed = pipeline_.filter().smoothed_path())
+      replace_file(request_.directory / "trajectory_smoothed.tum", tum_text(*smoothed));
     if (failure_) std::rethrow_exception(failure_);
     return summary;
   }
@@ -223,7 +222,7 @@ class Run {
     warn_of_unused_sightings(warnings);
     fill_timing(summary);
     summary.health.features = pipeline_.frontend().figures();
-    const Eigen::MatrixXd cov = pipeline_.filter().state().full_covariance();
+    const Eigen::MatrixXd cov = pipeline_.filter().covariance();
     if (cov.rows() <= kLargestSpectrum && cov.allFinite())
       summary.health.min_eigenvalue =
           Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(cov, Eigen::EigenvaluesOnly)

@@ -13,10 +13,10 @@ namespace {
 namespace fs = std::filesystem;
 
 /// What a run leaves behind; the only names that `force` removes.
-constexpr std::array<const char*, 11> kRunFiles = {
-    "run.json",      "config.yaml", "trajectory.tum", "trajectory.csv",
-    "map.csv",       "report.html", "map.simplemap",  "map.gridmap.gz",
-    "scene.3Dscene", "log.txt",     "checkpoint"};
+constexpr std::array<const char*, 12> kRunFiles = {
+    "run.json",       "config.yaml",   "trajectory.tum", "trajectory_smoothed.tum",
+    "map.csv",        "report.html",   "map.simplemap",  "trajectory.csv",
+    "map.gridmap.gz", "scene.3Dscene", "log.txt",        "checkpoint"};
 
 void prepare_directory(const fs::path& directory, bool force) {
   std::error_code error;

@@ -13,6 +13,16 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+/// A plot of panels over the abscissas of `series`; `good` says what a healthy run looks like.
+void add_plot(Json& plots, const char* title, const char* value, const char* good,
+              const SeriesEnvelope& series, Json panels) {
+  plots.push_back({{"title", title},
+                   {"value", value},
+                   {"good", good},
+                   {"t", abscissas(series)},
+                   {"panels", std::move(panels)}});
+}
+
 class InnovationPlot {
  public:
   explicit InnovationPlot(std::size_t rows) : mean_(rows) {}
@@ -35,14 +45,10 @@ class InnovationPlot {
     nis["level"] = {{"name", "ideal mean 1"}, {"value", 1.0}};
     nis["mean"] = channel(series_, 3, Edge::high);
     nis["log"] = true;
-    plots.push_back(
-        {{"title", "Innovations (NIS)"},
-         {"value", "NIS per degree of freedom"},
-         {"good",
-          "Divided by its degrees of freedom the squared innovation should average 1 and leave "
-          "the band in 5 % of the updates; steadily above it the noise is set too small."},
-         {"t", abscissas(series_)},
-         {"panels", Json::array({nis})}});
+    add_plot(plots, "Innovations (NIS)", "NIS per degree of freedom",
+             "Divided by its degrees of freedom the squared innovation should average 1 and leave "
+             "the band in 5 % of the updates; steadily above it the noise is set too small.",
+             series_, Json::array({nis}));
   }
 
  private:
@@ -74,14 +80,11 @@ class CalibrationPlot {
       if (const auto known = truth.calibration.find(names_[i]); known != truth.calibration.end())
         panels[i]["level"] = {{"name", "true value"}, {"value", known->second}};
     }
-    plots.push_back(
-        {{"title", "Calibration"},
-         {"value", "estimate"},
-         {"good",
-          "Each parameter should settle while its band shrinks and keeps the true value inside; a "
-          "band that never shrinks means that the motion did not excite the parameter."},
-         {"t", abscissas(series_)},
-         {"panels", panels}});
+    add_plot(
+        plots, "Calibration", "estimate",
+        "Each parameter should settle while its band shrinks and keeps the true value inside; a "
+        "band that never shrinks means that the motion did not excite the parameter.",
+        series_, std::move(panels));
   }
 
  private:
@@ -112,14 +115,10 @@ class NoisePlot {
         if (noise.name == names_[i] && noise.configured > 0.0)
           panels[i]["level"] = {{"name", "as configured"}, {"value", noise.configured}};
     }
-    plots.push_back(
-        {{"title", "Adapted noise"},
-         {"value", "adapted sigma"},
-         {"good",
-          "Each sigma should settle where the innovations put it and move only when the sensor "
-          "changes; one that stays at a limit or never rests is not identified."},
-         {"t", abscissas(series_)},
-         {"panels", panels}});
+    add_plot(plots, "Adapted noise", "adapted sigma",
+             "Each sigma should settle where the innovations put it and move only when the sensor "
+             "changes; one that stays at a limit or never rests is not identified.",
+             series_, std::move(panels));
   }
 
  private:

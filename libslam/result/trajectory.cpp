@@ -123,6 +123,16 @@ void append_tum_row(std::string& text, double time, const SpatialPose& pose) {
   text += '\n';
 }
 
+std::string tum_text(const Trajectory& path) {
+  std::string text;
+  for (std::size_t i = 0; i < path.times.size(); ++i)
+    if (path.spatial.empty())
+      append_tum_row(text, path.times[i], path.poses[i]);
+    else
+      append_tum_row(text, path.times[i], path.spatial[i]);
+  return text;
+}
+
 TrajectoryReader::TrajectoryReader(const std::filesystem::path& file)
     : name_(file.string()), in_(file) {
   if (!in_) throw std::runtime_error("cannot open " + name_);

@@ -39,6 +39,8 @@ void append_trajectory_row(std::string& text, const StepRecord& step, bool event
 /// One TUM line `t x y z qx qy qz qw`: 9 decimals, fixed notation.
 void append_tum_row(std::string& text, double time, const Eigen::Vector3d& pose);
 void append_tum_row(std::string& text, double time, const SpatialPose& pose);
+/// All rows of a path with times, in space where it is.
+std::string tum_text(const Trajectory& path);
 
 /// Streams trajectory.csv. A last line without line end, as a killed run may leave, is not read.
 class TrajectoryReader {

@@ -10,6 +10,7 @@
 #include <libslam/config/yaml_loader.hpp>
 #include <libslam/io/rawlog_player.hpp>
 #include <libslam/io/truth_reader.hpp>
+#include <libslam/pipeline/landmark_identity.hpp>
 #include <libslam/pipeline/mrpt_filter.hpp>
 #include <libslam/result/atomic_file.hpp>
 #include <libslam/result/recorder.hpp>
@@ -42,8 +43,7 @@ int run(const std::string& config, const std::string& rawlog, const std::string&
   summary.input.file = rawlog;
   summary.timing.cpu_s = cpu_s;
   summary.timing.steps = index;
-  const auto identity = parameters.association.uses_identities() ? LandmarkIdentity::known
-                                                                 : LandmarkIdentity::unknown;
+  const auto identity = landmark_identity(parameters);
   const LandmarkMap map = filter.landmarks();
   recorder.finish(summary, map, read_truth(find_truth(rawlog)), identity);
   std::cout << map.size() << " landmarks, " << cpu_s << " s CPU in the filter, " << directory

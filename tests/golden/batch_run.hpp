@@ -6,6 +6,7 @@
 #include <libslam/batch/batch_comparison.hpp>
 #include <libslam/batch/residuals.hpp>
 #include <libslam/pipeline/factory.hpp>
+#include <libslam/pipeline/landmark_identity.hpp>
 #include <libslam/result/alignment.hpp>
 
 namespace libslam::test {
@@ -33,9 +34,7 @@ inline BatchRun batch_imported(const std::string& config, const ImportedLog& log
   run.replay = replay_filter(rawlog, run.parameters);
   run.batch = optimize_batch(run.replay.log, parts, run.replay.estimate);
   run.comparison =
-      compare_with_batch(run.replay, run.batch, truth,
-                         run.parameters.association.uses_identities() ? LandmarkIdentity::known
-                                                                      : LandmarkIdentity::unknown);
+      compare_with_batch(run.replay, run.batch, truth, landmark_identity(run.parameters));
   if (on_line_steps > 0)
     run.comparison.on_line = compare_on_line(run.replay, parts, run.batch, truth, on_line_steps);
   return run;

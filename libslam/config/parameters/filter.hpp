@@ -14,6 +14,8 @@ struct FilterParameters {
   int update_linearizations = 1;
   double initial_sigma_xy = 0.0;
   double initial_sigma_heading_deg = 0.0;
+  double delayed_pose_distance = 0.0;
+  double delayed_pose_turn_deg = 30.0;
 
   void describe(auto& v) {
     v.value("error_frame", error_frame,
@@ -35,6 +37,13 @@ struct FilterParameters {
             {"m", "Standard deviation of the start position.", 0});
     v.value("initial_sigma_heading_deg", initial_sigma_heading_deg,
             {"deg", "Standard deviation of the start heading.", 0});
+    v.value("delayed_pose_distance", delayed_pose_distance,
+            {"m",
+             "A pose is kept in the state this far after the one before, so that later knowledge "
+             "corrects it: trajectory_smoothed.tum. 0: none. Each costs what a landmark costs.",
+             0});
+    v.value("delayed_pose_turn_deg", delayed_pose_turn_deg,
+            {"deg", "A pose is kept after this turn, too.", 1, 360});
   }
 };
 

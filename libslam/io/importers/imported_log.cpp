@@ -1,5 +1,4 @@
 #include <cmath>
-#include <filesystem>
 #include <stdexcept>
 
 #include <mrpt/io/CFileGZOutputStream.h>
@@ -16,8 +15,6 @@
 #include <libslam/io/importers/imported_log.hpp>
 #include <libslam/io/truth_writer.hpp>
 #include <libslam/map/csv_text.hpp>
-#include <libslam/result/atomic_file.hpp>
-#include <libslam/result/trajectory.hpp>
 
 namespace libslam {
 namespace {
@@ -157,13 +154,6 @@ bool write_rawlog(const ImportedLog& log, const std::string& file,
   return true;
 }
 
-std::string path_text(const Trajectory& path) {
-  std::string text;
-  for (std::size_t i = 0; i < path.poses.size(); ++i)
-    append_tum_row(text, path.times[i], path.poses[i]);
-  return text;
-}
-
 std::string notes_text(const ImportedLog& log) {
   nlohmann::json json;
   json["scenario"] = log.scenario;
@@ -222,15 +212,9 @@ void strip_identities(ImportedLog& log) {
 
 bool write_imported_log(const ImportedLog& log, const std::string& rawlog,
                         const std::function<bool()>& interrupted) {
-  const std::string stem = std::filesystem::path(rawlog).replace_extension().string();
-  const std::string path = stem + ".truth.tum", landmarks = stem + ".landmarks.csv";
-  std::error_code error;
-  std::filesystem::remove(path, error);
-  std::filesystem::remove(landmarks, error);
+  remove_truth_beside(rawlog);
   const bool complete = write_rawlog(log, rawlog, interrupted);
-  if (!log.truth.path.poses.empty()) replace_file(path, path_text(log.truth.path));
-  if (!log.truth.landmarks.empty()) replace_file(landmarks, landmarks_text(log.truth.landmarks));
-  replace_file(stem + ".truth.json", notes_text(log));
+  write_truth_beside(rawlog, log.truth, notes_text(log));
   return complete;
 }
 

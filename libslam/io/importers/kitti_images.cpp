@@ -11,14 +11,13 @@
 #include <mrpt/serialization/CArchive.h>
 #include <nlohmann/json.hpp>
 
-#include <libslam/data/trajectory.hpp>
+#include <libslam/data/ground_truth.hpp>
 #include <libslam/frontend/png_image.hpp>
 #include <libslam/io/importers/kitti_images.hpp>
 #include <libslam/io/input_error.hpp>
 #include <libslam/io/input_file.hpp>
 #include <libslam/io/text_reader.hpp>
-#include <libslam/result/atomic_file.hpp>
-#include <libslam/result/trajectory.hpp>
+#include <libslam/io/truth_writer.hpp>
 
 namespace libslam {
 namespace {
@@ -148,8 +147,7 @@ KittiImagesSummary import_kitti_images(const std::string& directory, const std::
       read_calibration(find_input_file(directory, "calib.txt"), folders[0].filename() == "image_2");
   const std::vector<double> times = read_times(directory);
   const std::vector<SpatialPose> poses = read_poses(directory);
-  const fs::path stem = fs::path(rawlog).replace_extension();
-  const fs::path images = stem.string() + "_Images";
+  const fs::path images = fs::path(rawlog).replace_extension().string() + "_Images";
   fs::create_directories(images);
   mrpt::io::CFileGZOutputStream out;
   if (!out.open(rawlog)) throw std::runtime_error(rawlog + ": cannot be written");
@@ -157,7 +155,7 @@ KittiImagesSummary import_kitti_images(const std::string& directory, const std::
   KittiImagesSummary summary;
   summary.baseline = camera.rightCameraPose.x;
   const Eigen::Quaterniond q(kAxes);
-  std::string truth;
+  GroundTruth truth;
   for (std::int64_t k = 0; fs::exists(folders[0] / pair_name(k)); ++k) {
     if (interrupted && interrupted()) {
       summary.complete = false;
@@ -181,19 +179,16 @@ KittiImagesSummary import_kitti_images(const std::string& directory, const std::
     *archive << pair;
     ++summary.pairs;
     if (at >= poses.size()) continue;
-    append_tum_row(truth, time, poses[at]);
+    truth.path.times.push_back(time);
+    truth.path.spatial.push_back(poses[at]);
     ++summary.true_poses;
   }
   if (summary.pairs == 0 && summary.complete)
     throw InputError(folders[0].string() + ": holds no 000000.png");
   archive.reset();
   out.close();
-  std::error_code ignored;
-  fs::remove(stem.string() + ".truth.tum", ignored);  // of an earlier import
-  fs::remove(stem.string() + ".landmarks.csv", ignored);
-  if (!truth.empty()) replace_file(stem.string() + ".truth.tum", truth);
-  replace_file(stem.string() + ".truth.json",
-               notes_text(directory, summary.pairs, summary.baseline));
+  remove_truth_beside(rawlog);
+  write_truth_beside(rawlog, truth, notes_text(directory, summary.pairs, summary.baseline));
   return summary;
 }
 

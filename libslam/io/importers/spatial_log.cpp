@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <filesystem>
 #include <random>
 #include <stdexcept>
 
@@ -13,8 +12,6 @@
 
 #include <libslam/io/importers/spatial_log.hpp>
 #include <libslam/io/truth_writer.hpp>
-#include <libslam/result/atomic_file.hpp>
-#include <libslam/result/trajectory.hpp>
 #include <libslam/state/so3.hpp>
 
 namespace libslam {
@@ -101,13 +98,6 @@ bool write_rawlog(const SpatialLog& log, const std::string& file,
   return true;
 }
 
-std::string path_text(const Trajectory& path) {
-  std::string text;
-  for (std::size_t i = 0; i < path.spatial.size(); ++i)
-    append_tum_row(text, path.times[i], path.spatial[i]);
-  return text;
-}
-
 std::string notes_text(const SpatialLog& log) {
   nlohmann::json json;
   json["scenario"] = log.scenario;
@@ -157,15 +147,9 @@ void simulate_pixels(SpatialLog& log, const Eigen::Vector4d& sigma, std::uint64_
 
 bool write_spatial_log(const SpatialLog& log, const std::string& rawlog,
                        const std::function<bool()>& interrupted) {
-  const std::string stem = std::filesystem::path(rawlog).replace_extension().string();
-  const std::string path = stem + ".truth.tum", landmarks = stem + ".landmarks.csv";
-  std::error_code error;
-  std::filesystem::remove(path, error);
-  std::filesystem::remove(landmarks, error);
+  remove_truth_beside(rawlog);
   const bool complete = write_rawlog(log, rawlog, interrupted);
-  if (!log.truth.path.spatial.empty()) replace_file(path, path_text(log.truth.path));
-  if (!log.truth.landmarks.empty()) replace_file(landmarks, landmarks_text(log.truth.landmarks));
-  replace_file(stem + ".truth.json", notes_text(log));
+  write_truth_beside(rawlog, log.truth, notes_text(log));
   return complete;
 }
 

@@ -37,6 +37,7 @@ TEST(SpatialValidation, AcceptsWhatIsSound) {
   Parameters p = in_space();
   p.calibration.bias_gyro_y.enabled = p.calibration.scale_speed.enabled = true;
   p.policies.implied_input.enabled = true;
+  p.association.forget_after = 2;
   EXPECT_EQ(culprits(p), std::vector<std::string>{});
   p = in_space();
   p.motion.model = "constant_twist";
@@ -112,6 +113,20 @@ TEST(SpatialValidation, RefusesParametersWithoutEffect) {
   p = in_space();
   p.policies.implied_input = {true, 1.0};
   EXPECT_TRUE(blames(p, "policies.implied_input.probability"));
+}
+
+// One bad observation makes every landmark start anew: never those of a map that is to last.
+TEST(SpatialValidation, ImpossibleMotionsNeedLandmarksThatAreForgotten) {
+  Parameters p = in_space();
+  p.policies.implied_input.enabled = true;
+  EXPECT_TRUE(blames(p, "policies.implied_input.enabled"));
+  p.association.forget_after = 2;
+  EXPECT_FALSE(blames(p, "policies.implied_input.enabled"));
+  p.association.forget_after = 0;
+  p.map.file = "map.yaml";
+  EXPECT_FALSE(blames(p, "policies.implied_input.enabled"));
+  p.map.mode = "continue";
+  EXPECT_TRUE(blames(p, "policies.implied_input.enabled"));
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include <libslam/io/importers/kitti_features.hpp>
 #include <libslam/io/importers/starry_night.hpp>
 #include <libslam/io/input_error.hpp>
+#include <libslam/io/log_inspection.hpp>
 #include <libslam/io/truth_reader.hpp>
 
 #include "data_directory.hpp"
@@ -99,6 +100,19 @@ TEST_F(SpatialImport, RoundTripThroughTheRawlog) {
   EXPECT_NEAR(truth.path.spatial[1].rotation.z(), std::sin(0.125), 1e-9);
   ASSERT_EQ(truth.landmarks.size(), 2U);
   EXPECT_EQ(truth.landmarks[1].position, Eigen::Vector3d(6, 1, 1));
+}
+
+TEST_F(SpatialImport, InspectionKnowsMotionsInSpace) {
+  ASSERT_TRUE(write_spatial_log(import_starry_night(write(starry_files())), rawlog()));
+  RawlogPlayer player(rawlog(), with_policy("strict"));
+  LogInspection inspection;
+  for (const LogStep& step : play(player)) inspection.observe(step);
+  const OdometryStatistics& odometry = inspection.odometry();
+  EXPECT_EQ(odometry.motions, 1);
+  EXPECT_EQ(odometry.velocities_agree, 1);
+  EXPECT_NEAR(odometry.total_turn, 0.25, 1e-9);
+  // The chord of .5 s at 1 m/s and .5 rad/s.
+  EXPECT_NEAR(odometry.path_length, 2.0 * std::sin(0.125) / 0.5, 1e-9);
 }
 
 TEST_F(SpatialImport, SimulatedPixelsAreProjectionsWithTheStatedNoise) {

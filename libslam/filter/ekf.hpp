@@ -63,8 +63,8 @@ class Ekf {
                      std::span<const LinearizedMeasurement> measurements,
                      std::span<const BlockId> considered = {});
 
-  /// The three parts of `correct`, for those who look in between. `weigh` leaves the state alone and
-  /// may be repeated, say with another R; false: S is not positive definite.
+  /// The three parts of `correct`, for those who look in between. `weigh` leaves the state alone
+  /// and may be repeated, say with another R; false: S is not positive definite.
   bool weigh(GaussianState& state, std::span<const LinearizedMeasurement> measurements);
   /// After a `weigh` that succeeded: computes the step, and leaves the state alone, too.
   Correction solve(GaussianState& state, std::span<const BlockId> considered = {});

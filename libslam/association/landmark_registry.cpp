@@ -51,15 +51,25 @@ bool LandmarkRegistry::given_up(const RegisteredLandmark& landmark) const {
 }
 
 std::vector<BlockId> LandmarkRegistry::record_update() {
-  std::vector<BlockId> gone;
   for (auto& landmark : landmarks_) {
     ++landmark.updates;
     ++landmark.unseen;
-    if (given_up(landmark)) gone.push_back(landmark.block);
   }
+  return clear_if([this](const RegisteredLandmark& landmark) { return given_up(landmark); });
+}
+
+std::vector<BlockId> LandmarkRegistry::clear_younger(int updates) {
+  return clear_if(
+      [updates](const RegisteredLandmark& landmark) { return landmark.updates < updates; });
+}
+
+template <class Condition>
+std::vector<BlockId> LandmarkRegistry::clear_if(Condition condition) {
+  std::vector<BlockId> gone;
+  for (const RegisteredLandmark& landmark : landmarks_)
+    if (condition(landmark)) gone.push_back(landmark.block);
   if (gone.empty()) return gone;
-  std::erase_if(landmarks_,
-                [this](const RegisteredLandmark& landmark) { return given_up(landmark); });
+  std::erase_if(landmarks_, condition);
   by_id_.clear();
   for (std::size_t i = 0; i < landmarks_.size(); ++i) by_id_[landmarks_[i].id] = i;
   return gone;

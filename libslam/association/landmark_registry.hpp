@@ -53,9 +53,13 @@ class LandmarkRegistry {
   std::vector<BlockId> record_update();
   /// Removes and returns all landmarks.
   std::vector<BlockId> clear();
+  /// Removes and returns those added less than so many updates ago. The others keep their places.
+  std::vector<BlockId> clear_younger(int updates);
 
  private:
   bool given_up(const RegisteredLandmark& landmark) const;
+  template <class Condition>
+  std::vector<BlockId> clear_if(Condition condition);
 
   int confirm_after_, prune_after_, forget_after_;
   std::int64_t next_number_;

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include <Eigen/Cholesky>
@@ -57,6 +58,40 @@ PoseFit fit_pose(std::span<const PointPair> pairs, const Eigen::Vector3d& start)
     fit.T_world_robot[2] = wrap_angle(fit.T_world_robot[2]);
   }
   fit.cov = information.inverse();
+  return fit;
+}
+
+PoseFit fit_pose(std::span<const PointPair> pairs, const Eigen::MatrixXd& cov_landmarks,
+                 const Eigen::Vector3d& start) {
+  const auto rows = 2 * static_cast<Eigen::Index>(pairs.size());
+  PoseFit fit;
+  fit.T_world_robot = start;
+  Eigen::VectorXd e(rows);
+  Eigen::MatrixX3d jacobian(rows, 3);
+  for (int step = 0; step <= kSteps; ++step) {
+    const Eigen::Matrix2d rotation = rotation_of(fit.T_world_robot);
+    Eigen::MatrixXd s = cov_landmarks;
+    for (Eigen::Index row = 0; const auto& [seen, landmark] : pairs) {
+      const Eigen::Vector2d arm = rotation * seen->position;
+      e.segment<2>(row) = landmark->position - arm - fit.T_world_robot.head<2>();
+      jacobian.middleRows<2>(row) << 1.0, 0.0, -arm.y(), 0.0, 1.0, arm.x();
+      s.block<2, 2>(row, row) += rotation * seen->cov * rotation.transpose();
+      row += 2;
+    }
+    const Eigen::LLT<Eigen::MatrixXd> factor(s);
+    const Eigen::VectorXd white = factor.matrixL().solve(e);
+    const Eigen::MatrixX3d white_jacobian = factor.matrixL().solve(jacobian);
+    const Eigen::Matrix3d information = white_jacobian.transpose() * white_jacobian;
+    fit.cov = information.inverse();
+    fit.mahalanobis2 = factor.info() == Eigen::Success ? white.squaredNorm()
+                                                       : std::numeric_limits<double>::infinity();
+    fit.log_likelihood = -0.5 * fit.mahalanobis2 -
+                         factor.matrixLLT().diagonal().array().log().sum() -
+                         0.5 * static_cast<double>(rows) * std::log(2.0 * std::numbers::pi);
+    if (step == kSteps) break;
+    fit.T_world_robot += information.ldlt().solve(white_jacobian.transpose() * white);
+    fit.T_world_robot[2] = wrap_angle(fit.T_world_robot[2]);
+  }
   return fit;
 }
 

@@ -40,4 +40,11 @@ struct PointResidual {
 /// different points, else the covariance is not finite.
 PoseFit fit_pose(std::span<const PointPair> pairs, const Eigen::Vector3d& start);
 
+/// The same where the errors of the landmarks go together: `cov_landmarks` (2n x 2n, in the order
+/// of the pairs) instead of theirs. What all have in common, the drift of a map, is no misfit then
+/// and hides none: the distance measures what they have not. Infinite distance where S is not
+/// positive definite.
+PoseFit fit_pose(std::span<const PointPair> pairs, const Eigen::MatrixXd& cov_landmarks,
+                 const Eigen::Vector3d& start);
+
 }  // namespace libslam

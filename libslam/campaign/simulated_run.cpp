@@ -8,6 +8,7 @@
 
 #include <libslam/campaign/recovery.hpp>
 #include <libslam/campaign/simulated_run.hpp>
+#include <libslam/data/step_events.hpp>
 #include <libslam/pipeline/landmark_identity.hpp>
 #include <libslam/pipeline/mrpt_filter.hpp>
 #include <libslam/pipeline/pipeline.hpp>
@@ -127,7 +128,7 @@ class Lane {
       observation_of_pose_.push_back(observations_ - 1);
       recovery_.observe(record.time - path_.front().time, error);
     }
-    if (record.event == "disturbance") ++disturbances_;
+    if (has_event(record.event, "disturbance")) ++disturbances_;
   }
 
   void describe(const GroundTruth& truth, bool with_series, VariantOutcome& outcome) const {

@@ -51,7 +51,9 @@ struct StepRecord {
   int accepted = 0, gated = 0, ambiguous = 0, new_landmarks = 0;
   std::vector<CalibrationValue> calibration;
   std::vector<AdaptedNoise> noise;  ///< the same names in every step of a run
-  std::string event;  ///< e.g. "disturbance", "relocalized", "lost"; empty where nothing happened
+  /// E.g. "disturbance", "lost", "disturbance+relocalized" (data/step_events.hpp); empty where
+  /// nothing happened.
+  std::string event;
   double step_ms = 0.0;  ///< wall time of the step; never written to trajectory.csv
 };
 

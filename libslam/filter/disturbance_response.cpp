@@ -2,6 +2,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include <Eigen/Cholesky>
+
 #include <libslam/filter/disturbance_response.hpp>
 
 namespace libslam {
@@ -14,6 +16,8 @@ constexpr std::size_t kEnoughPairs = 3, kEnoughPairsNearby = 2;
 constexpr double kNearbyScale = 0.4;
 /// Updates in a row of which half or more fits nothing: with gates of .99 once in a million.
 constexpr int kPersistent = 3;
+/// Updates from search to search while nothing is in doubt.
+constexpr int kSearchPeriod = 5;
 
 void inflate_all(GaussianState& state, double factor) {
   for (const BlockId block : state.blocks()) {
@@ -35,6 +39,27 @@ DisturbanceResponse::DisturbanceResponse(Disturbance policy, const ResponseOptio
     : policy_(std::move(policy)), options_(options) {
   if (!(options.near_landmark >= 0.0) || options.lost_after < 1)
     throw std::invalid_argument("a lost pose needs a distance and a number of updates");
+  if (options.slip_probability != 0.0) hindsight_.emplace(options.slip_probability);
+}
+
+void DisturbanceResponse::open(GaussianState& state, BlockId pose) {
+  if (hindsight_) hindsight_->open(state, pose);
+}
+
+bool DisturbanceResponse::reconsider(GaussianState& state, BlockId pose, Ekf& ekf,
+                                     std::span<const BlockId> given) {
+  if (!hindsight_ || !hindsight_->reconsider(state, pose, ekf, given)) return false;
+  policy_.begin();
+  return true;
+}
+
+std::span<const BlockId> DisturbanceResponse::shadows() const {
+  return hindsight_ ? hindsight_->shadows() : std::span<const BlockId>();
+}
+
+void DisturbanceResponse::pose_found() {
+  settle();
+  if (hindsight_) hindsight_->forget();
 }
 
 void DisturbanceResponse::lose() {
@@ -42,14 +67,14 @@ void DisturbanceResponse::lose() {
   unexplained_ = options_.lost_after;
 }
 
-void DisturbanceResponse::found() {
+void DisturbanceResponse::settle() {
   unexplained_ = unpaired_ = 0;
   vanished_ = false;
 }
 
 void DisturbanceResponse::moved(const Eigen::VectorXd& before, const Eigen::VectorXd& after,
                                 const BlockMatrix& cov) {
-  if (options_.relocalize && disturbed()) relocalizer_.move(before, after, cov);
+  if (options_.relocalize) relocalizer_.move(before, after, cov);
 }
 
 Doubt DisturbanceResponse::answer(const RespondingFilter& filter,
@@ -148,7 +173,7 @@ Doubt DisturbanceResponse::search(const RespondingFilter& filter) {
 Doubt DisturbanceResponse::stay_lost(const RespondingFilter& filter,
                                      const AssociatedObservation& observation) {
   if (!plausible(filter, observation, kEnoughPairs)) return settle_on(false);
-  found();
+  settle();
   return Doubt::kDisturbed;
 }
 
@@ -159,9 +184,31 @@ std::optional<FoundPose> DisturbanceResponse::search_map(const RespondingFilter&
   // Identities leave nothing to guess: no need to wait.
   const bool sure = unexplained_ > 0 && has_identities(features);
   if (!lost() && !sure) return std::nullopt;
-  auto found_pose = relocalizer_.find(filter.state, filter.registry);
-  if (found_pose) found();
-  return found_pose;
+  return relocalizer_.find(filter.state, filter.registry);
+}
+
+// Landmarks of the map that stand elsewhere are no sign of a disturbance to the associator: what
+// fits nothing near is new. Their constellation tells.
+std::optional<FoundPose> DisturbanceResponse::recognize(const RespondingFilter& filter,
+                                                        const AssociatedObservation& observation) {
+  if (!options_.relocalize || has_identities(observation.features)) return std::nullopt;
+  relocalizer_.observe(filter.state, filter.pose, filter.measurement, observation.features);
+  const auto landmarks = filter.registry.landmarks();
+  const auto known = std::ranges::count_if(observation.verdicts, [&](const Verdict& verdict) {
+    return verdict.outcome == Outcome::kPaired && landmarks[verdict.landmark].updates >= kYoung;
+  });
+  if (++searched_ < kSearchPeriod || observation.features.empty() ||
+      2 * static_cast<std::size_t>(known) >= observation.features.size())
+    return std::nullopt;
+  searched_ = 0;
+  const auto found = relocalizer_.find_among_older(filter.state, filter.registry, kYoung);
+  if (!found) return std::nullopt;
+  Eigen::Vector3d apart = found->T_world_robot - filter.state.estimate(filter.pose);
+  apart[2] = wrap_angle(apart[2]);
+  const Eigen::Matrix3d cov = found->cov + filter.state.covariance_of(filter.pose);
+  if (policy_.possible(apart.dot(cov.ldlt().solve(apart)), 3)) return std::nullopt;
+  policy_.begin();
+  return found;
 }
 
 bool DisturbanceResponse::plausible(const RespondingFilter& filter,

@@ -1,7 +1,8 @@
 #pragma once
 // What a filter does while something moves the robot that its odometry does not know of.
 //
-//   quiet      -> every update is tested, nothing else
+//   quiet      -> every update is tested; where most of what is seen is new, the map is searched
+//                 for it now and then: perhaps the robot has been carried off unseen
 //   disturbed  -> before each correction the pose gets the covariance that explains the
 //                 observation, which is then associated anew; new landmarks wait
 //   lost       -> nothing explained several updates in a row: the whole map is searched for what
@@ -15,6 +16,7 @@
 #include <libslam/association/landmark_registry.hpp>
 #include <libslam/data/joint_innovation.hpp>
 #include <libslam/filter/ekf.hpp>
+#include <libslam/filter/hindsight.hpp>
 #include <libslam/filter/relocalizer.hpp>
 #include <libslam/measurement/measurement_model.hpp>
 #include <libslam/policy/disturbance.hpp>
@@ -51,11 +53,13 @@ struct ResponseOptions {
   double near_landmark = 10.0;  ///< a feature this near to a landmark should fit one [m]
   int lost_after = 3;           ///< updates in a row that nothing explains
   bool relocalize = true;       ///< planar poses and points alone
+  double slip_probability = 0;  ///< of a slip that only hindsight shows; 0: not looked for
 };
 
 class DisturbanceResponse {
  public:
-  /// Throws std::invalid_argument unless `near_landmark` >= 0 and `lost_after` >= 1.
+  /// Throws std::invalid_argument unless `near_landmark` >= 0, `lost_after` >= 1 and
+  /// `slip_probability` is in [0, 1).
   DisturbanceResponse(Disturbance policy, const ResponseOptions& options);
 
   /// The robot has moved: where the pose block was before, and the covariance of the step.
@@ -65,6 +69,24 @@ class DisturbanceResponse {
   /// After an `answer`: the pose of a lost robot, if the map shows it.
   std::optional<FoundPose> search_map(const RespondingFilter& filter,
                                       std::span<const Feature> features);
+
+  /// After an `answer` without doubt: a pose elsewhere in the map that explains what was seen
+  /// recently, where most of it has just been taken for new. Its landmarks younger than `kYoung`
+  /// updates are then second copies.
+  std::optional<FoundPose> recognize(const RespondingFilter& filter,
+                                     const AssociatedObservation& observation);
+  static constexpr int kYoung = 100;
+  /// Right before a correction.
+  void open(GaussianState& state, BlockId pose);
+  /// After it; true if hindsight shows a slip, for which state and policy then have been corrected.
+  /// The blocks in `given` do not change.
+  bool reconsider(GaussianState& state, BlockId pose, Ekf& ekf, std::span<const BlockId> given);
+  /// The pose has been set anew.
+  void pose_found();
+
+  bool relocalizes() const { return options_.relocalize; }
+  /// Blocks of the state that serve hindsight alone.
+  std::span<const BlockId> shadows() const;
 
   /// Nothing is known of the pose: the map will be searched for it.
   void lose();
@@ -87,14 +109,16 @@ class DisturbanceResponse {
   bool plausible(const RespondingFilter& filter, const AssociatedObservation& observation,
                  std::size_t enough_pairs);
   Doubt settle_on(bool explained);
-  void found();
+  void settle();
 
   Disturbance policy_;
   ResponseOptions options_;
   Relocalizer relocalizer_;
+  std::optional<Hindsight> hindsight_;
   int unexplained_ = 0;         // updates in a row
   int unpaired_ = 0;            // updates in a row of which half or more fits nothing
   std::size_t last_pairs_ = 0;  // of the update before
+  int searched_ = 0;            // updates since the map was last searched without a doubt
   bool vanished_ = false;       // all landmarks in view were gone at once, and others there
   JointInnovation joint_;
 };

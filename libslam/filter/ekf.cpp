@@ -144,22 +144,56 @@ bool Ekf::weigh(GaussianState& state, std::span<const LinearizedMeasurement> mea
   return true;
 }
 
-Correction Ekf::apply(GaussianState& state, BlockId pose, std::span<const BlockId> considered) {
+Correction Ekf::solve(GaussianState& state, std::span<const BlockId> considered) {
   const Index m = weighed_, n = state.dimension();
   if (delta_.size() < n) delta_.resize(2 * n);
   considered_.clear();
   for (const BlockId block : considered)
     for (Index i = 0; i < state.size(block); ++i) considered_.push_back(state.offset(block) + i);
   state.covariance().gain(s_.topLeftCorner(m, m), white_.head(m), considered_, delta_.head(n));
-  state.covariance().correct(frame_->retract(state, pose, delta_.head(n)));
+  step_size_ = n;
   return {true, nis_, static_cast<int>(m)};
+}
+
+void Ekf::apply(GaussianState& state, BlockId pose) {
+  state.covariance().correct(move(state, pose));
+}
+
+ChartChange Ekf::move(GaussianState& state, BlockId pose) const {
+  return frame_->retract(state, pose, step());
 }
 
 Correction Ekf::correct(GaussianState& state, BlockId pose,
                         std::span<const LinearizedMeasurement> measurements,
                         std::span<const BlockId> considered) {
   if (measurements.empty() || !weigh(state, measurements)) return {};
-  return apply(state, pose, considered);
+  const Correction correction = solve(state, considered);
+  apply(state, pose);
+  return correction;
+}
+
+void Ekf::spread(GaussianState& state, BlockId pose, std::span<const BlockId> shadows,
+                 const MatrixRef& root, const VectorRef& white, std::span<const BlockId> kept) {
+  placed_.clear();
+  placed_.reserve(shadows.size());
+  rows_.clear();
+  Index m = 0;
+  for (const BlockId block : shadows) {
+    const Index d = state.size(block);
+    placed_.push_back({state.offset(block), BlockMatrix::Identity(d, d)});
+    rows_.push_back({m, d, std::span(&placed_.back(), 1)});
+    m += d;
+  }
+  if (s_.rows() < m) s_.resize(2 * m, 2 * m);
+  state.covariance().observe(rows_, s_.topLeftCorner(m, m));
+  const Index n = state.dimension();
+  if (delta_.size() < n) delta_.resize(2 * n);
+  considered_.clear();
+  for (const BlockId block : kept)
+    for (Index i = 0; i < state.size(block); ++i) considered_.push_back(state.offset(block) + i);
+  state.covariance().spread(root, white, considered_, delta_.head(n));
+  step_size_ = n;
+  apply(state, pose);
 }
 
 /// L^-T, upper triangular, in whole tiles; what stands before a tile's own columns is zero.

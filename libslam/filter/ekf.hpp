@@ -63,11 +63,24 @@ class Ekf {
                      std::span<const LinearizedMeasurement> measurements,
                      std::span<const BlockId> considered = {});
 
-  /// The two halves of `correct`. `weigh` does not change the state and may be repeated, say with
-  /// another R; false: S is not positive definite.
+  /// The three parts of `correct`, for those who look in between. `weigh` leaves the state alone
+  /// and may be repeated, say with another R; false: S is not positive definite.
   bool weigh(GaussianState& state, std::span<const LinearizedMeasurement> measurements);
-  /// After a `weigh` that succeeded.
-  Correction apply(GaussianState& state, BlockId pose, std::span<const BlockId> considered = {});
+  /// After a `weigh` that succeeded: computes the step, and leaves the state alone, too.
+  Correction solve(GaussianState& state, std::span<const BlockId> considered = {});
+  /// Takes the step; nothing else may have happened to the covariance since `weigh`.
+  void apply(GaussianState& state, BlockId pose);
+  /// The step that was solved last: an additive error of the whole state. Valid until the next one.
+  Eigen::Map<const Eigen::VectorXd> step() const { return {delta_.data(), step_size_}; }
+  /// Moves the estimates alone by that step, as `apply` does; returns the change of the error that
+  /// goes with it (ErrorFrame::retract).
+  [[nodiscard]] ChartChange move(GaussianState& state, BlockId pose) const;
+
+  /// Takes information back: P <- P + B M B^T, delta = B root white, with B the covariance of the
+  /// state with `shadows` (filter/hindsight.hpp) and M = root root^T. The blocks in `kept` do not
+  /// change.
+  void spread(GaussianState& state, BlockId pose, std::span<const BlockId> shadows,
+              const MatrixRef& root, const VectorRef& white, std::span<const BlockId> kept);
 
   /// After `weigh` or a correction that was applied, with the same measurements: each of them seen
   /// through the S of all, without the position of its feature.
@@ -101,6 +114,7 @@ class Ekf {
   Eigen::MatrixXd diagonals_;  // of S^-1: the main one, the one below it, ...
   Eigen::VectorXd nu_, white_, weighted_, delta_;
   Eigen::Index weighed_ = 0;  // rows
+  Eigen::Index step_size_ = 0;
   double nis_ = 0.0;
 };
 

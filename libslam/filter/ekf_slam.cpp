@@ -2,6 +2,7 @@
 #include <stdexcept>
 #include <string>
 
+#include <libslam/data/step_events.hpp>
 #include <libslam/filter/ekf_slam.hpp>
 #include <libslam/filter/pair_test.hpp>
 
@@ -23,6 +24,11 @@ EkfSlamParts checked(EkfSlamParts parts) {
     throw std::invalid_argument(
         "EkfSlam starts in a map with a measurement model of landmarks, linearized at the "
         "estimate");
+  if (parts.disturbance && parts.disturbance->relocalizes() &&
+      (parts.motion->pose_spec().chart != Chart::kSE2 ||
+       tangent_dimension(parts.measurement->landmark_spec()) != 2))
+    throw std::invalid_argument(
+        "EkfSlam finds a lost pose again in the plane alone, among planar landmarks");
   return parts;
 }
 
@@ -41,7 +47,7 @@ UpdateOutcome& UpdateOutcome::operator+=(const UpdateOutcome& other) {
   gated += other.gated;
   ambiguous += other.ambiguous;
   new_landmarks += other.new_landmarks;
-  if (!other.event.empty()) event = other.event;
+  add_events(event, other.event);
   verdicts.insert(verdicts.end(), other.verdicts.begin(), other.verdicts.end());
   return *this;
 }
@@ -113,7 +119,7 @@ void EkfSlam::propagate(const MotionAction* action) {
   if (parts_.process) scale_process_noise();
   if (!calibration_.empty())
     calibration_.observe(state_, pose_, step_, action->dt, displacement_model());
-  if (disturbed())
+  if (parts_.disturbance)
     parts_.disturbance->moved(state_.estimate(pose_), step_.estimate, step_.cov_noise);
   ekf_.propagate(state_, step_);
   if (parts_.implied_input)
@@ -160,7 +166,9 @@ UpdateOutcome EkfSlam::update(std::span<const Feature> features) {
   associate(features);
   if (parts_.disturbance) respond(features, outcome);
   if (parts_.implied_input) reject_impossible(features, outcome);
-  correct(outcome);
+  if (parts_.disturbance && !used_.empty()) parts_.disturbance->open(state_, pose_);
+  correct(features, outcome);
+  if (parts_.disturbance && outcome.accepted > 0) reconsider(outcome);
   add_landmarks(features, outcome);
   return outcome;
 }
@@ -212,11 +220,25 @@ bool EkfSlam::weigh() {
   }
 }
 
-void EkfSlam::correct(UpdateOutcome& outcome) {
+Correction EkfSlam::correct_with_pairs(std::span<const Feature> features) {
+  if (used_.empty() || !weigh()) return {};
+  if (parts_.iteration)
+    return parts_.iteration->correct(
+        state_, ekf_, pose_, std::span(measured_).first(used_.size()), considered(),
+        [&](std::size_t i, LinearizedMeasurement& measurement) {
+          const BlockId landmark = parts_.registry.landmarks()[verdicts_[used_[i]].landmark].block;
+          linearizer_.linearize(*parts_.measurement, state_, pose_, landmark, features[used_[i]],
+                                measurement);
+        });
+  const Correction correction = ekf_.solve(state_, considered());
+  ekf_.apply(state_, pose_);
+  return correction;
+}
+
+void EkfSlam::correct(std::span<const Feature> features, UpdateOutcome& outcome) {
   const PhaseTimer timer(times_, Phase::kUpdate);
   const Eigen::Vector2d before = state_.estimate(pose_).head<2>();
-  Correction correction;
-  if (!used_.empty() && weigh()) correction = ekf_.apply(state_, pose_, considered());
+  const Correction correction = correct_with_pairs(features);
   if (correction.applied) {
     linearizer_.corrected(state_, pose_, before);
     outcome.accepted = static_cast<int>(used_.size());

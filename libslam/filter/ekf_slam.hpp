@@ -20,6 +20,7 @@
 #include <libslam/filter/displacement_update.hpp>
 #include <libslam/filter/disturbance_response.hpp>
 #include <libslam/filter/ekf.hpp>
+#include <libslam/filter/iterated_update.hpp>
 #include <libslam/filter/linearizer.hpp>
 #include <libslam/filter/map_start.hpp>
 #include <libslam/filter/selected_pairs.hpp>
@@ -43,6 +44,7 @@ struct EkfSlamParts {
   std::optional<DisplacementUpdate> displacement;
   std::unique_ptr<NoisePolicy> noise;              ///< null: R as the features bring it
   std::unique_ptr<ProcessScale> process;           ///< null: Q as the motion model says
+  std::optional<IteratedUpdate> iteration;         ///< absent: one linearization per correction
   std::optional<DisturbanceResponse> disturbance;  ///< absent: every observation is believed
   std::optional<ImpliedInput> implied_input;       ///< absent: any motion is possible
   std::optional<DelayedPoses> delayed;             ///< absent: the past is forgotten
@@ -59,7 +61,8 @@ struct UpdateOutcome {
   int nis_dof = 0;
   int accepted = 0, gated = 0, ambiguous = 0, new_landmarks = 0;
   std::vector<Verdict> verdicts;  ///< one per feature
-  /// What a run should tell: "disturbance", "lost", "relocalized", "impossible_motion".
+  /// What a run should tell: "disturbance", "lost", "relocalized", "impossible_motion", joined as
+  /// data/step_events.hpp says.
   std::string event;
 
   UpdateOutcome& operator+=(const UpdateOutcome& other);
@@ -91,7 +94,10 @@ class EkfSlam {
   /// every innovation, and none is added (MapStart::landmarks_given); or SLAM again.
   void give_landmarks(bool given);
 
+  /// What is estimated, and shadows of it (filter/hindsight.hpp).
   const GaussianState& state() const { return state_; }
+  /// Of all that is estimated, in state order: full symmetric, without the shadows.
+  Eigen::MatrixXd covariance() const;
   BlockId pose() const { return pose_; }
   const LandmarkRegistry& registry() const { return parts_.registry; }
   const PhaseTimes& times() const { return times_; }
@@ -125,12 +131,14 @@ class EkfSlam {
   void linearize_pairs(std::span<const Feature> features);
   void respond(std::span<const Feature> features, UpdateOutcome& outcome);
   void start_again_at(const FoundPose& found, std::span<const Feature> features);
+  void reconsider(UpdateOutcome& outcome);
   /// Gives up an observation that implies an impossible motion; the landmarks start anew, unless
   /// they are given.
   void reject_impossible(std::span<const Feature> features, UpdateOutcome& outcome);
   /// How the accepted pairs fit; the noise policy learns from them. False: they cannot be used.
   bool weigh();
-  void correct(UpdateOutcome& outcome);
+  Correction correct_with_pairs(std::span<const Feature> features);
+  void correct(std::span<const Feature> features, UpdateOutcome& outcome);
   void add_landmarks(std::span<const Feature> features, UpdateOutcome& outcome);
 
   EkfSlamParts parts_;

@@ -28,6 +28,20 @@ double largest_distance(std::span<const PlanarPoint> points) {
   return largest;
 }
 
+/// Of the landmarks of `pairs`, with all cross terms.
+Eigen::MatrixXd joint_covariance(const GaussianState& state, const LandmarkRegistry& registry,
+                                 std::span<const Pairing> pairs) {
+  const auto n = static_cast<Eigen::Index>(pairs.size());
+  const auto block = [&](Eigen::Index k) {
+    return registry.landmarks()[pairs[static_cast<std::size_t>(k)].landmark].block;
+  };
+  Eigen::MatrixXd cov(2 * n, 2 * n);
+  for (Eigen::Index i = 0; i < n; ++i)
+    for (Eigen::Index k = 0; k < n; ++k)
+      cov.block<2, 2>(2 * i, 2 * k) = state.cross_covariance(block(i), block(k));
+  return cov;
+}
+
 }  // namespace
 
 void Relocalizer::restart() {
@@ -78,6 +92,17 @@ std::optional<FoundPose> Relocalizer::find(const GaussianState& state,
   return identified ? find_by_identity(state, registry) : find_by_constellation(state, registry);
 }
 
+// The map changes from search to search while the robot believes that it knows where it is.
+std::optional<FoundPose> Relocalizer::find_among_older(const GaussianState& state,
+                                                       const LandmarkRegistry& registry, int age) {
+  map_.reset();
+  least_age_ = age;
+  auto pose = find_by_constellation(state, registry);
+  map_.reset();
+  least_age_ = 0;
+  return pose;
+}
+
 std::optional<FoundPose> Relocalizer::find_by_identity(const GaussianState& state,
                                                        const LandmarkRegistry& registry) const {
   std::vector<PlanarPoint> mapped(latest_.size());
@@ -98,10 +123,11 @@ std::optional<FoundPose> Relocalizer::find_by_identity(const GaussianState& stat
   }
   mrpt::math::TPose2D start;
   if (pairs.size() < kLeastByIdentity || !mrpt::tfest::se2_l2(matches, start)) return std::nullopt;
-  const PoseFit fit = fit_pose(points, {start.x, start.y, start.phi});
+  const PoseFit fit =
+      fit_pose(points, joint_covariance(state, registry, pairs), {start.x, start.y, start.phi});
   const int dof = 2 * static_cast<int>(pairs.size()) - 3;
   if (!(fit.mahalanobis2 <= chi_square_quantile(kFitProbability, dof))) return std::nullopt;
-  FoundPose pose = found(fit.T_world_robot);
+  FoundPose pose = found(fit.T_world_robot, fit.cov);
   pose.pairs = std::move(pairs);
   return pose;
 }
@@ -112,7 +138,8 @@ void Relocalizer::index(const GaussianState& state, const LandmarkRegistry& regi
                         double reach) {
   landmarks_.clear();
   for (std::size_t k = 0; k < registry.size(); ++k)
-    if (registry.landmarks()[k].confirmed) landmarks_.push_back(k);
+    if (registry.landmarks()[k].confirmed && registry.landmarks()[k].updates >= least_age_)
+      landmarks_.push_back(k);
   std::vector<PlanarPoint> points;
   for (const std::size_t k : landmarks_) {
     const BlockId block = registry.landmarks()[k].block;
@@ -141,7 +168,7 @@ std::optional<FoundPose> Relocalizer::find_by_constellation(const GaussianState&
   if (!map_ || needed > reach_) index(state, registry, kReserve * needed);
   const ConstellationMatch match = match_constellation(*map_, seen, sightings_.views());
   if (match.verdict != ConstellationVerdict::kFound) return std::nullopt;
-  FoundPose pose = found(match.T_world_robot);
+  FoundPose pose = found(match.T_world_robot, match.cov);
   for (const Pairing& pair : match.pairs)
     if (const auto feature = latest_of(seen[pair.feature]))
       pose.pairs.push_back({*feature, landmarks_[pair.landmark]});
@@ -161,10 +188,11 @@ std::optional<std::size_t> Relocalizer::latest_of(const PlanarPoint& sighting) c
   return best;
 }
 
-FoundPose Relocalizer::found(const Eigen::Vector3d& pose) const {
+FoundPose Relocalizer::found(const Eigen::Vector3d& pose, const Eigen::Matrix3d& cov) const {
   const double sigma = kUninformedRanges * max_range_;
   FoundPose found;
   found.T_world_robot = pose;
+  found.cov = cov;
   found.cov_uninformed = Eigen::Vector3d(sigma, sigma, kUninformedHeading).cwiseAbs2().asDiagonal();
   return found;
 }

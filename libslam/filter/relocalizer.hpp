@@ -28,6 +28,7 @@ namespace libslam {
 /// A pose, and what the last observation sees of the map from there.
 struct FoundPose {
   Eigen::Vector3d T_world_robot = Eigen::Vector3d::Zero();   ///< x [m], y [m], phi [rad]
+  Eigen::Matrix3d cov = Eigen::Matrix3d::Zero();             ///< relative to the map around it
   Eigen::Matrix3d cov_uninformed = Eigen::Matrix3d::Zero();  ///< to start the pose block with
   std::vector<Pairing> pairs;  ///< features of the observation, positions in the registry
 };
@@ -48,6 +49,9 @@ class Relocalizer {
   /// Nothing where no pose explains what was seen, or another one nearly as well, or the last
   /// observation alone does not fix it.
   std::optional<FoundPose> find(const GaussianState& state, const LandmarkRegistry& registry);
+  /// The same by constellation, among the landmarks that were added `age` updates ago or earlier.
+  std::optional<FoundPose> find_among_older(const GaussianState& state,
+                                            const LandmarkRegistry& registry, int age);
 
  private:
   std::optional<FoundPose> find_by_identity(const GaussianState& state,
@@ -57,7 +61,7 @@ class Relocalizer {
   void index(const GaussianState& state, const LandmarkRegistry& registry, double reach);
   /// The feature of the last observation that is this sighting; nothing if none or several may be.
   std::optional<std::size_t> latest_of(const PlanarPoint& sighting) const;
-  FoundPose found(const Eigen::Vector3d& pose) const;
+  FoundPose found(const Eigen::Vector3d& pose, const Eigen::Matrix3d& cov) const;
 
   RecentSightings sightings_{kMemory};
   std::vector<PlanarPoint> latest_;             // the last observation, robot frame
@@ -65,6 +69,7 @@ class Relocalizer {
   double max_range_ = 0.0, max_bearing_ = 0.0;  // of all that was seen, sensor frame
   std::unique_ptr<ConstellationIndex> map_;
   double reach_ = 0.0;                  // of the distances in map_
+  int least_age_ = 0;                   // of the landmarks in map_ [updates]
   std::vector<std::size_t> landmarks_;  // registry position of each point of map_
 };
 

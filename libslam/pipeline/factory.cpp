@@ -147,6 +147,7 @@ EkfSlamParts make_filter_parts(const Parameters& p, const TrueState* truth) {
   }
   parts.frame = make_error_frame(p.filter.error_frame);
   parts.linearization = make_linearization_point(p, truth);
+  if (p.filter.update_linearizations > 1) parts.iteration.emplace(p.filter.update_linearizations);
   parts.noise = make_noise_policy(p);
   parts.registry = LandmarkRegistry(
       p.association.confirm_after, p.association.prune_after,

@@ -84,6 +84,8 @@ std::optional<DisturbanceResponse> make_disturbance_response(const DisturbancePa
   response.lost_after = p.lost_after;
   response.relocalize =
       p.relocalize && pose.chart == Chart::kSE2 && tangent_dimension(landmark) == 2;
+  // All of P grows by the literal form: there is nothing to take back.
+  if (p.response != "whole_state") response.slip_probability = p.slip_probability;
   return DisturbanceResponse(Disturbance(options), response);
 }
 

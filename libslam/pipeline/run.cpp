@@ -225,7 +225,7 @@ class Run {
     warnings.insert(warnings.end(), about_noise.begin(), about_noise.end());
     fill_timing(summary);
     summary.health.features = pipeline_.frontend().figures();
-    const Eigen::MatrixXd cov = pipeline_.filter().state().full_covariance();
+    const Eigen::MatrixXd cov = pipeline_.filter().covariance();
     if (cov.rows() <= kLargestSpectrum && cov.allFinite())
       summary.health.min_eigenvalue =
           Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(cov, Eigen::EigenvaluesOnly)

@@ -53,17 +53,29 @@ bool Disturbance::judge(double nis, int dof, bool estranged) {
   if (triggered || !quiet(nis, dof)) {
     // What was inflated explains the past.
     recent_.clear();
-    quiet_ = 0;
+    quiet_ = blind_ = 0;
     return true;
   }
-  if (++quiet_ >= options_.hold) settle();
+  // No evidence is no quiet update. But a robot that has left its map would never map again.
+  if (dof > 0)
+    ++quiet_;
+  else
+    ++blind_;
+  if (quiet_ >= options_.hold || blind_ >= kBlindHolds * options_.hold) settle();
   return false;
+}
+
+void Disturbance::begin() {
+  recent_.clear();
+  began_ = began_ || !lasts_;
+  lasts_ = true;
+  quiet_ = blind_ = 0;
 }
 
 void Disturbance::settle() {
   recent_.clear();
   lasts_ = began_ = false;
-  quiet_ = 0;
+  quiet_ = blind_ = 0;
 }
 
 double Disturbance::squared_distance(const JointInnovation& joint) {

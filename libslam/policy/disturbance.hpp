@@ -5,7 +5,8 @@
 // Test.  d^2 = nu^T S^-1 nu of an observation, with the innovations that the gate rejected, is
 // chi-square with m degrees of freedom while the filter is right. A disturbance begins where d^2 of
 // one update, or its sum over the last `window` updates, is beyond the trigger level; it ends after
-// `hold` updates in a row below the release level.
+// `hold` updates below the release level, or after `kBlindHolds` times as many that say nothing,
+// with none between them that is not.
 //
 // Inflation.  A displacement is independent of the map and of the error before it, so it adds
 // s^2 C to the block of the pose and leaves the cross terms alone:
@@ -44,6 +45,8 @@ struct DisturbanceOptions {
 
 class Disturbance {
  public:
+  /// Updates without evidence end a disturbance after so many times `hold`.
+  static constexpr int kBlindHolds = 10;
   /// The scales of the grid.
   static constexpr std::array<double, 9> kScales = {0.0, 0.03, 0.1, 0.2, 0.4, 0.7, 1.0, 2.0, 4.0};
 
@@ -61,6 +64,8 @@ class Disturbance {
   bool lasts() const { return lasts_; }
   /// The last `judge` began a disturbance.
   bool began() const { return began_; }
+  /// Begins a disturbance, or goes on with it, for another reason than `judge` knows.
+  void begin();
   /// Ends a disturbance: the pose has been found again, and earlier innovations say nothing.
   void settle();
 
@@ -83,7 +88,7 @@ class Disturbance {
   DisturbanceOptions options_;
   std::deque<Sum> recent_;
   bool lasts_ = false, began_ = false;
-  int quiet_ = 0;
+  int quiet_ = 0, blind_ = 0;
 };
 
 }  // namespace libslam

@@ -20,7 +20,7 @@ struct StepTime {
   double mean = 0, p50 = 0, p95 = 0, max = 0;
 };
 
-/// Something that happened in a step, see StepRecord::event.
+/// One of the things that happened in a step, see StepRecord::event.
 struct RunEvent {
   double time = 0.0;      ///< [s], as in the log
   std::int64_t step = 0;  ///< running number of the step

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <span>
 
+#include <libslam/data/step_events.hpp>
 #include <libslam/result/step_statistics.hpp>
 #include <libslam/state/chi_square.hpp>
 
@@ -48,9 +49,10 @@ void StepStatistics::add(const StepRecord& step) {
   step_times_.add(static_cast<double>(step.index), std::span(&step.step_ms, 1));
   calibration_ = step.calibration;
   noise_ = step.noise;
-  if (step.event.empty()) return;
-  disturbances_ += step.event == "disturbance";
-  if (events_.size() < kMostEvents) events_.push_back({step.time, step.index, step.event});
+  for_each_event(step.event, [&](std::string_view name) {
+    disturbances_ += name == "disturbance";
+    if (events_.size() < kMostEvents) events_.push_back({step.time, step.index, std::string(name)});
+  });
 }
 
 const StepStatistics::Band& StepStatistics::nis_band(int dof) {

@@ -43,7 +43,7 @@ class StepStatistics {
   /// Of the last step.
   const std::vector<CalibrationValue>& calibration() const { return calibration_; }
   const std::vector<AdaptedNoise>& noise() const { return noise_; }
-  /// Steps whose event is "disturbance".
+  /// Steps with the event "disturbance".
   std::int64_t disturbances() const { return disturbances_; }
   /// The first kMostEvents of them.
   const std::vector<RunEvent>& events() const { return events_; }

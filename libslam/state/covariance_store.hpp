@@ -64,6 +64,9 @@ class CovarianceStore {
   virtual void project(std::span<const JacobianRows> rows,
                        Eigen::Ref<Eigen::MatrixXd> out) const = 0;
 
+  /// The covariance of [row, row + d) with [col, col + e) becomes `cross`; the two do not overlap.
+  virtual void couple(Eigen::Index row, Eigen::Index col, const BlockMatrix& cross) = 0;
+
   // A correction takes three calls in this order, each using what the one before has left behind. P
   // changes in the last alone, in one pass; until then it can be given up.
 
@@ -75,6 +78,11 @@ class CovarianceStore {
   /// covariance with each other stays (Schmidt-Kalman; Schmidt 1966).
   virtual void gain(const Eigen::Ref<const Eigen::MatrixXd>& lower, const VectorRef& white,
                     std::span<const Eigen::Index> considered, Eigen::Ref<Eigen::VectorXd> dx) = 0;
+  /// Instead of a gain, what takes information back: P <- P + W W^T and dx = W white with
+  /// W = P H^T root for the rows observed, at most as many columns as rows; the coordinates in
+  /// `kept` do not change. For the change of chart `correct` may follow.
+  virtual void spread(const MatrixRef& root, const VectorRef& white,
+                      std::span<const Eigen::Index> kept, Eigen::Ref<Eigen::VectorXd> dx) = 0;
   /// P <- T (P - P H^T S^-1 H P) T^T with T as `change` says; without a `gain` before, P <- T P
   /// T^T. The coordinates that `change` reads (E) must not be among the considered ones.
   virtual void correct(const ChartChange& change) = 0;

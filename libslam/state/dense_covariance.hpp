@@ -27,10 +27,13 @@ class DenseCovariance final : public CovarianceStore {
   void add_noise(Eigen::Index offset, const BlockMatrix& cov_noise) override;
   void augment(std::span<const PlacedJacobian> wrt, const BlockMatrix& cov_noise) override;
   void remove(Eigen::Index offset, Eigen::Index size) override;
+  void couple(Eigen::Index row, Eigen::Index col, const BlockMatrix& cross) override;
   void project(std::span<const JacobianRows> rows, Eigen::Ref<Eigen::MatrixXd> out) const override;
   void observe(std::span<const JacobianRows> rows, Eigen::Ref<Eigen::MatrixXd> out) override;
   void gain(const Eigen::Ref<const Eigen::MatrixXd>& lower, const VectorRef& white,
             std::span<const Eigen::Index> considered, Eigen::Ref<Eigen::VectorXd> dx) override;
+  void spread(const MatrixRef& root, const VectorRef& white, std::span<const Eigen::Index> kept,
+              Eigen::Ref<Eigen::VectorXd> dx) override;
   void correct(const ChartChange& change) override;
   void marginal(Eigen::Index row, Eigen::Index col, Eigen::Ref<Eigen::MatrixXd> out) const override;
 

@@ -20,6 +20,8 @@ namespace {
 
 constexpr int kSeeds = 50;
 constexpr int kNever = 1'000'000;
+/// Updates with four landmarks of the map in range, within which a lost robot is to be found.
+constexpr int kViews = 20;
 
 using Change = std::function<void(Scenario&, int seed)>;
 
@@ -48,10 +50,11 @@ void anywhere(Scenario& scenario, int seed) {
   scenario.faults.kidnap.turn_deg = 180.0 * part(random);
 }
 
-/// Fifty drives with one filter of the campaign.
+/// Drives with one filter of the campaign.
 class Drives {
  public:
-  Drives(const std::string& variant, const Change& change) : drives_(kSeeds) {
+  Drives(const std::string& variant, const Change& change, int runs = kSeeds)
+      : drives_(static_cast<std::size_t>(runs)) {
     const CampaignPlan plan =
         load_campaign(std::filesystem::path(LIBSLAM_CONFIG_DIR) / "mc_disturbance.yaml", {});
     const auto& variants = plan.points.front().variants;
@@ -60,7 +63,7 @@ class Drives {
     std::vector<std::jthread> threads;
     for (unsigned k = 0; k < std::max(1U, std::thread::hardware_concurrency()); ++k)
       threads.emplace_back([&] {
-        for (int i; (i = next++) < kSeeds;) {
+        for (int i; (i = next++) < runs;) {
           Scenario scenario = plan.points.front().scenario;
           change(scenario, i + 1);
           drives_[static_cast<std::size_t>(i)] =
@@ -84,7 +87,7 @@ class Drives {
   double mean(double DisturbedDrive::*figure) const {
     double sum = 0.0;
     for (const DisturbedDrive& drive : drives_) sum += drive.*figure;
-    return sum / kSeeds;
+    return sum / static_cast<double>(drives_.size());
   }
   /// Per run.
   double events(const std::string& name) const {
@@ -92,7 +95,7 @@ class Drives {
     for (const DisturbedDrive& drive : drives_)
       if (const auto found = drive.events.find(name); found != drive.events.end())
         sum += found->second;
-    return sum / kSeeds;
+    return sum / static_cast<double>(drives_.size());
   }
 
  private:
@@ -127,8 +130,7 @@ TEST(Disturbance, FindsBackAfterAKidnapAndKeepsItsMap) {
   }
 }
 
-// Slips of the first lap cost the map what no filter gets back: 1.52 times the calm map, without a
-// response 1.88 times.
+// Measured: 1.06 times the calm map; 1.52 times without hindsight, 1.88 times without a response.
 TEST(Disturbance, FindsBackAfterSlips) {
   const Drives calm("none", undisturbed), drives(kLikelihood, slips);
   EXPECT_GT(drives.events("disturbance"), 1.0);
@@ -136,7 +138,7 @@ TEST(Disturbance, FindsBackAfterSlips) {
   EXPECT_LE(drives.quantile(0.9), 45);
   EXPECT_LE(drives.never(), 1);
   EXPECT_LE(drives.mean(&DisturbedDrive::landmark_rmse),
-            1.7 * calm.mean(&DisturbedDrive::landmark_rmse));
+            1.3 * calm.mean(&DisturbedDrive::landmark_rmse));
 }
 
 // What the seed may be read to say, for comparison.
@@ -152,14 +154,26 @@ TEST(Disturbance, FindsBackWithoutIdentities) {
   EXPECT_LE(drives.quantile(0.5), 15);
 }
 
+// Of those that see four landmarks of their map at a time: back within twenty such views. Many
+// places of this sparse world show one landmark or none for half a minute.
 TEST(Disturbance, FindsItselfAnywhereInItsMap) {
-  const Drives drives("unknown", anywhere);
-  int wrong = 0;
-  for (const DisturbedDrive& drive : drives.drives()) wrong += drive.wrong_recovery ? 1 : 0;
+  const Drives drives("unknown", anywhere, 180);
+  int wrong = 0, judged = 0, back_in_time = 0;
+  for (const DisturbedDrive& drive : drives.drives()) {
+    wrong += drive.wrong_recovery ? 1 : 0;
+    if (drive.views < kViews && !(drive.back && drive.views > 0)) continue;
+    ++judged;
+    back_in_time += drive.back && drive.views <= kViews ? 1 : 0;
+  }
   EXPECT_EQ(wrong, 0);
-  // 33: many places of this sparse world show one landmark or none.
-  EXPECT_GE(std::ranges::count_if(
-                drives.drives(),
-                [](const DisturbedDrive& drive) { return drive.relocalized_after >= 0; }),
-            28);
+  EXPECT_GE(judged, 30);
+  EXPECT_GE(back_in_time, 0.95 * judged) << "of " << judged;
+  const auto back = std::ranges::count_if(drives.drives(), &DisturbedDrive::back);
+  EXPECT_GE(back, 0.95 * static_cast<double>(drives.drives().size()));
+}
+
+// With identities the map shows where the robot is as soon as it sees three of them.
+TEST(Disturbance, IdentitiesLeadToNoWrongPlace) {
+  const Drives drives(kLikelihood, anywhere, 100);
+  EXPECT_EQ(std::ranges::count_if(drives.drives(), &DisturbedDrive::wrong_recovery), 0);
 }

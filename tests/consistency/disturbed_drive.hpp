@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include <libslam/data/step_events.hpp>
 #include <libslam/pipeline/pipeline.hpp>
 #include <libslam/pipeline/simulation.hpp>
 #include <libslam/simulation/planar_pose.hpp>
@@ -23,6 +24,10 @@ struct DisturbedDrive {
   double last_error = 0.0;            ///< of the position at the end [m]
   int relocalized_after = -1;         ///< updates after the first event
   bool wrong_recovery = false;        ///< relocalized, and still far off
+  /// Updates after the first event until the robot is back (two pairs, less than kWrongRecovery
+  /// off), or all, in which at least four landmarks of the map of then are in range.
+  int views = 0;
+  bool back = false;
 };
 
 /// Recovered: the position error is below twice what it was on average in so many updates before.
@@ -79,6 +84,7 @@ class DisturbedDriver {
     double sum = 0.0;
     for (std::size_t i = errors_.size() - kLevelUpdates; i < errors_.size(); ++i) sum += errors_[i];
     open_.push_back({2.0 * sum / kLevelUpdates});
+    if (!happened_) remember_map();
     happened_ = true;
   }
 
@@ -86,9 +92,14 @@ class DisturbedDriver {
     const double error = (record.pose - truth).head<2>().norm();
     errors_.push_back(error);
     squares_ += error * error;
-    if (!record.event.empty()) ++drive_.events[record.event];
+    for_each_event(record.event,
+                   [&](std::string_view name) { ++drive_.events[std::string(name)]; });
     if (happened_) ++since_event_;
-    if (record.event == "relocalized") {
+    if (happened_ && !drive_.back) {
+      if (mapped_in_range(truth) >= 4) ++drive_.views;
+      drive_.back = error < kWrongRecovery && record.accepted >= 2;
+    }
+    if (has_event(record.event, "relocalized")) {
       drive_.wrong_recovery = drive_.wrong_recovery || error > kWrongRecovery;
       if (drive_.relocalized_after < 0) drive_.relocalized_after = since_event_;
     }
@@ -97,6 +108,24 @@ class DisturbedDriver {
       if (error >= event.level) return false;
       drive_.recoveries.push_back(event.updates);
       return true;
+    });
+  }
+
+  /// Landmarks of the world that the filter has a landmark near to.
+  void remember_map() {
+    const auto map = pipeline_.filter().landmarks();
+    for (const TrueLandmark& landmark : simulator_->landmarks()) {
+      const Eigen::Vector2d place =
+          transform_back(simulator_->start(), Eigen::Vector2d(landmark.position.head<2>()));
+      const auto near = [&](const LandmarkEstimate& one) {
+        return (one.mean.head<2>() - place).norm() < kWrongRecovery;
+      };
+      if (std::ranges::any_of(map, near)) mapped_.push_back(place);
+    }
+  }
+  std::ptrdiff_t mapped_in_range(const Eigen::Vector3d& truth) const {
+    return std::ranges::count_if(mapped_, [&](const Eigen::Vector2d& place) {
+      return (place - truth.head<2>()).norm() < scenario_.range_bearing.max_range;
     });
   }
 
@@ -121,6 +150,7 @@ class DisturbedDriver {
   double start_time_ = 0.0, time_ = 0.0;
   bool slipping_ = false, happened_ = false;
   std::vector<Event> open_;
+  std::vector<Eigen::Vector2d> mapped_;
   std::vector<double> errors_;
   double squares_ = 0.0;
   int since_event_ = 0;

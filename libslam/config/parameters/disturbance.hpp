@@ -20,6 +20,7 @@ struct DisturbanceParameters {
   double near_landmark = 10.0;
   bool relocalize = true;
   int lost_after = 3;
+  double slip_probability = 0.001;
 
   void describe(auto& v) {
     v.value("response", response,
@@ -57,10 +58,18 @@ struct DisturbanceParameters {
              "sign of a disturbance when they are at least half of a frame.",
              0});
     v.value("relocalize", relocalize,
-            {"", "Search the whole map for what is seen when the pose is lost."});
+            {"",
+             "Search the whole map for what is seen when the pose is lost. A search in the plane: "
+             "robots in space and landmarks with three coordinates go without it."});
     v.value(
         "lost_after", lost_after,
         {"1", "The pose is lost after so many updates in a row that nothing explains.", 1, 10000});
+    v.value("slip_probability", slip_probability,
+            {"1",
+             "Probability, before anything was seen, that the wheels slipped in one of the last 8 "
+             "intervals between updates: what the updates since say of it is weighed against it, "
+             "and a slip corrects pose, map and calibration in hindsight; 0: none is looked for.",
+             0, 0.5});
   }
 };
 

@@ -11,6 +11,7 @@ namespace libslam {
 struct FilterParameters {
   std::string error_frame = "right_invariant";
   std::string linearization = "estimate";
+  int update_linearizations = 1;
   double initial_sigma_xy = 0.0;
   double initial_sigma_heading_deg = 0.0;
   double delayed_pose_distance = 0.0;
@@ -27,6 +28,11 @@ struct FilterParameters {
          0,
          0,
          {"estimate", "first_estimate", "at_truth"}});
+    v.value("update_linearizations", update_linearizations,
+            {"1",
+             "Most linearizations of one correction; more than 1: the iterated EKF, for what is "
+             "hardly known beforehand, such as the velocity of constant_twist.",
+             1, 20});
     v.value("initial_sigma_xy", initial_sigma_xy,
             {"m", "Standard deviation of the start position.", 0});
     v.value("initial_sigma_heading_deg", initial_sigma_heading_deg,

@@ -6,6 +6,15 @@ namespace libslam {
 
 void check_filter(const Parameters& p, TruthAccess truth, Conflicts& conflicts) {
   const FilterParameters& f = p.filter;
+  if (f.update_linearizations > 1 && f.linearization != "estimate") {
+    conflicts.push_back({{"filter.update_linearizations", "filter.linearization"},
+                         "iterations look for the best point to linearize at, the other key says "
+                         "where it is"});
+  }
+  if (f.update_linearizations > 1 && p.measurement.model == "sensor_displacement") {
+    conflicts.push_back({{"filter.update_linearizations", "measurement.model"},
+                         "only sightings of landmarks are iterated"});
+  }
   if (f.linearization == "estimate") {
     return;
   }

@@ -3,6 +3,11 @@
 namespace libslam {
 namespace {
 
+/// The landmarks are given: none is added or removed.
+bool localizes_in_map(const Parameters& p) {
+  return !p.map.file.empty() && p.map.mode == "localize";
+}
+
 bool in_space(const Parameters& p) {
   return p.motion.model == "body_twist" || p.motion.model == "constant_twist";
 }
@@ -50,6 +55,12 @@ void check_spatial(const Parameters& p, Conflicts& conflicts) {
   if (implied.enabled && !(implied.probability > 0.0 && implied.probability < 1.0)) {
     conflicts.push_back(
         {{"policies.implied_input.probability"}, "a test at 0 rejects everything, at 1 nothing"});
+  }
+  if (implied.enabled && p.association.forget_after == 0 && !localizes_in_map(p)) {
+    conflicts.push_back({{"policies.implied_input.enabled", "association.forget_after"},
+                         "an observation that asks for an impossible motion makes all landmarks "
+                         "start anew, and a map that is to last would be lost; forget landmarks, "
+                         "or localize in a given map"});
   }
   if (p.filter.linearization != "estimate" && !planar_map) {
     conflicts.push_back({{"filter.linearization", "measurement.stereo.landmark_dimension"},

@@ -10,9 +10,9 @@
 #include <mrpt/obs/CObservationStereoImages.h>
 #include <mrpt/serialization/CArchive.h>
 #include <nlohmann/json.hpp>
-#include <opencv2/imgcodecs.hpp>
 
 #include <libslam/data/ground_truth.hpp>
+#include <libslam/frontend/png_image.hpp>
 #include <libslam/io/importers/kitti_images.hpp>
 #include <libslam/io/input_error.hpp>
 #include <libslam/io/input_file.hpp>
@@ -107,14 +107,18 @@ std::vector<SpatialPose> read_poses(const std::string& directory) {
 /// Copies one image beside the rawlog and lets the observation name it there.
 void place_image(const fs::path& source, const fs::path& folder, const std::string& name,
                  mrpt::img::CImage& image, mrpt::img::TCamera& camera) {
-  const cv::Mat pixels = cv::imread(source.string(), cv::IMREAD_GRAYSCALE);
-  if (pixels.empty()) throw InputError(source.string() + ": is no image");
+  cv::Size size;
+  try {
+    size = read_png(source.string()).size();
+  } catch (const DamagedPng& defect) {
+    throw InputError(source.string() + ": is no image: " + defect.what());
+  }
   if (!fs::copy_file(source, folder / name, fs::copy_options::overwrite_existing))
     throw std::runtime_error((folder / name).string() + ": cannot be written");
   fs::permissions(folder / name, fs::perms::owner_write, fs::perm_options::add);  // next import
   image.setExternalStorage(name);
-  camera.ncols = static_cast<std::uint32_t>(pixels.cols);
-  camera.nrows = static_cast<std::uint32_t>(pixels.rows);
+  camera.ncols = static_cast<std::uint32_t>(size.width);
+  camera.nrows = static_cast<std::uint32_t>(size.height);
 }
 
 std::string notes_text(const std::string& directory, std::int64_t pairs, double baseline) {

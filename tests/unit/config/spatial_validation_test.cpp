@@ -37,6 +37,7 @@ TEST(SpatialValidation, AcceptsWhatIsSound) {
   Parameters p = in_space();
   p.calibration.bias_gyro_y.enabled = p.calibration.scale_speed.enabled = true;
   p.policies.implied_input.enabled = true;
+  p.association.forget_after = 2;
   EXPECT_EQ(culprits(p), std::vector<std::string>{});
   p = in_space();
   p.motion.model = "constant_twist";
@@ -49,6 +50,21 @@ TEST(SpatialValidation, AcceptsWhatIsSound) {
     p.measurement.stereo.landmark_dimension = dimension;
     EXPECT_EQ(culprits(p), std::vector<std::string>{}) << dimension;
   }
+}
+
+TEST(SpatialValidation, IterationsLookForTheirPointOfLinearizationThemselves) {
+  Parameters p = in_space();
+  p.filter.update_linearizations = 3;
+  EXPECT_EQ(culprits(p), std::vector<std::string>{});
+  p = Parameters();
+  p.filter.update_linearizations = 3;
+  EXPECT_EQ(culprits(p), std::vector<std::string>{});
+  p.filter.error_frame = "standard";
+  p.filter.linearization = "first_estimate";
+  EXPECT_EQ(culprits(p), std::vector<std::string>{"filter.update_linearizations"});
+  p.filter.linearization = "estimate";
+  p.measurement.model = p.frontend.source = "sensor_displacement";
+  EXPECT_TRUE(blames(p, "filter.update_linearizations"));
 }
 
 TEST(SpatialValidation, TwistAndBodyTwistBelongTogether) {
@@ -97,6 +113,20 @@ TEST(SpatialValidation, RefusesParametersWithoutEffect) {
   p = in_space();
   p.policies.implied_input = {true, 1.0};
   EXPECT_TRUE(blames(p, "policies.implied_input.probability"));
+}
+
+// One bad observation makes every landmark start anew: never those of a map that is to last.
+TEST(SpatialValidation, ImpossibleMotionsNeedLandmarksThatAreForgotten) {
+  Parameters p = in_space();
+  p.policies.implied_input.enabled = true;
+  EXPECT_TRUE(blames(p, "policies.implied_input.enabled"));
+  p.association.forget_after = 2;
+  EXPECT_FALSE(blames(p, "policies.implied_input.enabled"));
+  p.association.forget_after = 0;
+  p.map.file = "map.yaml";
+  EXPECT_FALSE(blames(p, "policies.implied_input.enabled"));
+  p.map.mode = "continue";
+  EXPECT_TRUE(blames(p, "policies.implied_input.enabled"));
 }
 
 }  // namespace

@@ -112,7 +112,11 @@ TEST_F(KittiImages, RejectsWhatIsNoStereoData) {
   EXPECT_NE(rejection().find("right camera at the right"), std::string::npos) << rejection();
   write("calib.txt", std::string(kRow) + kRightRow);
   std::ofstream(data() / "image_r" / "000001.png") << "no image";
+  testing::internal::CaptureStderr();
   EXPECT_NE(rejection().find("000001.png: is no image"), std::string::npos) << rejection();
+  fs::remove(data() / "image_r" / "000001.png");
+  EXPECT_NE(rejection().find("image"), std::string::npos) << rejection();
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
   fs::remove_all(data() / "image_r");
   EXPECT_NE(rejection().find("no folders"), std::string::npos) << rejection();
 }

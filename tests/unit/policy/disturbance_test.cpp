@@ -93,7 +93,34 @@ TEST(Disturbance, EndsAfterQuietUpdatesInARow) {
   EXPECT_TRUE(policy.judge(12.0, 4, false));  // beyond release, below trigger: inflate again
   for (int k = 0; k < 2; ++k) EXPECT_FALSE(policy.judge(4.0, 4, false));
   EXPECT_TRUE(policy.lasts());
-  policy.judge(0.0, 0, false);  // no evidence is quiet
+  policy.judge(4.0, 4, false);
+  EXPECT_FALSE(policy.lasts());
+}
+
+TEST(Disturbance, NoEvidenceIsNotQuiet) {
+  DisturbanceOptions o = options();
+  o.hold = 3;
+  Disturbance policy(o);
+  policy.judge(100.0, 4, false);
+  for (int k = 0; k < o.hold; ++k) policy.judge(0.0, 0, false);
+  EXPECT_TRUE(policy.lasts());
+  for (int k = 0; k < o.hold; ++k) {
+    EXPECT_TRUE(policy.lasts());
+    policy.judge(0.0, 0, false);  // between quiet ones it does not count
+    policy.judge(4.0, 4, false);
+  }
+  EXPECT_FALSE(policy.lasts());
+}
+
+// A robot that has left its map behind has no evidence to wait for.
+TEST(Disturbance, EndsAfterALongTimeWithoutEvidence) {
+  DisturbanceOptions o = options();
+  o.hold = 3;
+  Disturbance policy(o);
+  policy.judge(100.0, 4, false);
+  for (int k = 1; k < Disturbance::kBlindHolds * o.hold; ++k) policy.judge(0.0, 0, false);
+  EXPECT_TRUE(policy.lasts());
+  policy.judge(0.0, 0, false);
   EXPECT_FALSE(policy.lasts());
 }
 

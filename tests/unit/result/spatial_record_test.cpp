@@ -20,14 +20,14 @@ std::string content(const fs::path& file) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-/// With noise that drifts and two events.
+/// With noise that drifts and three events, two of them in one step.
 sample::Run adaptive_run(int steps) {
   sample::Run run = sample::make_spatial_run(steps, 30);
   for (StepRecord& step : run.steps) {
     const double k = static_cast<double>(step.index);
     step.noise = {{"pixel", 1.0 + 0.01 * k, 1.0}, {"disparity", 0.5 / (1.0 + k), 0.7}};
     if (step.index == 10) step.event = "disturbance";
-    if (step.index == 14) step.event = "relocalized";
+    if (step.index == 14) step.event = "lost+relocalized";
   }
   return run;
 }
@@ -97,9 +97,13 @@ TEST(SpatialRecord, TheSummaryHoldsPoseNoiseEventsAndTheComparisonInSpace) {
   EXPECT_EQ(summary.result.noise[0].sigma, run.steps.back().noise[0].sigma);
   EXPECT_EQ(summary.result.noise[1].configured, 0.7);
   EXPECT_EQ(*summary.health.disturbances, 1);
-  ASSERT_EQ(summary.health.events.size(), 2u);
-  EXPECT_EQ(summary.health.events[1].step, 14);
-  EXPECT_EQ(summary.health.events[1].time, run.steps[14].time);
+  ASSERT_EQ(summary.health.events.size(), 3u);
+  EXPECT_EQ(summary.health.events[1].what, "lost");
+  EXPECT_EQ(summary.health.events[2].what, "relocalized");
+  for (const std::size_t one : {1u, 2u}) {
+    EXPECT_EQ(summary.health.events[one].step, 14);
+    EXPECT_EQ(summary.health.events[one].time, run.steps[14].time);
+  }
   EXPECT_TRUE(summary.truth->path->rotation);
   EXPECT_EQ(summary.truth->nees->dof, 6);
   const RecordedRun back = read_recorded_run(directory);

@@ -92,6 +92,7 @@ TEST(Allocation, AStepWithAdaptationIsFreeOfItInSteadyState) {
         again = noise.observe(seen, postfits);
         for (std::size_t i = 0; i < postfits.size(); ++i) measurements[i].cov = seen[i].cov;
       }
+      ekf.solve(state);
       ekf.apply(state, pose);
       process.observe(ekf.look_back(measurements, pose, state.size(pose)));
       return true;

@@ -115,6 +115,44 @@ TEST_P(DenseCovarianceSizes, CorrectEqualsJosephForm) {
   EXPECT_LT((dx - k * nu).cwiseAbs().maxCoeff(), kRounding * 10);
 }
 
+TEST_P(DenseCovarianceSizes, SpreadTakesInformationBack) {
+  std::mt19937_64 random(17);
+  const Eigen::Index n = GetParam();
+  Store store(random_covariance(n, random));
+  const std::vector<PlacedJacobian> first{{0, BlockMatrix::Identity(2, 2)}},
+      last{{n - 2, BlockMatrix::Identity(2, 2)}};
+  Eigen::MatrixXd s(4, 4), b(n, 4);
+  store.dense.observe(std::vector<JacobianRows>{{0, 2, first}, {2, 2, last}}, s);
+  b << store.full.leftCols(2), store.full.rightCols(2);
+  b.row(2).setZero();  // kept
+  const Eigen::MatrixXd root = random_matrix(4, 3, random);
+  const Eigen::VectorXd white = random_matrix(3, 1, random);
+  Eigen::VectorXd dx(n);
+  store.dense.spread(root, white, std::vector<Eigen::Index>{2}, dx);
+  EXPECT_LT((dx - b * root * white).cwiseAbs().maxCoeff(), kRounding * 10);
+  const Eigen::MatrixXd expected = store.full + b * root * root.transpose() * b.transpose();
+  EXPECT_LT(error(store.matrix(), expected), kRounding * 10);
+  const Eigen::MatrixXd u = random_matrix(n, 1, random), t = chart_matrix(1, u);
+  store.dense.correct(chart_change(1, u));
+  EXPECT_LT(error(store.matrix(), t * expected * t.transpose()), kRounding * 100);
+}
+
+TEST_P(DenseCovarianceSizes, CoupleSetsACrossCovariance) {
+  std::mt19937_64 random(18);
+  const Eigen::Index n = GetParam();
+  Store store(random_covariance(n, random));
+  Eigen::MatrixXd expected = store.full;
+  for (const bool below : {true, false}) {
+    const BlockMatrix cross = random_matrix(1, 3, random);
+    const Eigen::Index row = below ? n - 1 : 0, col = below ? 0 : n - 3;
+    expected.block(row, col, 1, 3) = cross;
+    expected.block(col, row, 3, 1) = cross.transpose();
+    store.dense.couple(row, col, cross);
+    EXPECT_LT(error(store.matrix(), expected), kRounding);
+  }
+  EXPECT_THROW(store.dense.couple(1, 0, BlockMatrix::Zero(1, 3)), std::invalid_argument);
+}
+
 TEST_P(DenseCovarianceSizes, ConsideredCoordinatesDoNotLearn) {
   std::mt19937_64 random(18);
   const Eigen::Index n = GetParam();

@@ -1,5 +1,5 @@
 // Measurement noise that is not what the filter was told, in SLAM and in a known map; fifty paired
-// runs. Bounds are those of the issue, beside them what was measured.
+// runs. Bounds are those of the specification, beside them what was measured.
 
 #include <cmath>
 #include <map>

@@ -138,6 +138,34 @@ std::string pair_name(std::int64_t number) {
   return name;
 }
 
+/// Removes a file that an exception leaves incomplete.
+class IncompleteFile {
+ public:
+  explicit IncompleteFile(std::string file) : file_(std::move(file)) {}
+  IncompleteFile(const IncompleteFile&) = delete;
+  IncompleteFile& operator=(const IncompleteFile&) = delete;
+  ~IncompleteFile() {
+    std::error_code ignored;
+    if (!file_.empty()) fs::remove(file_, ignored);
+  }
+  void complete() { file_.clear(); }
+
+ private:
+  std::string file_;
+};
+
+/// Throws InputError naming the first image that is missing below the highest number.
+void require_all_images(const fs::path& folder) {
+  std::int64_t images = 0;
+  for (const auto& entry : fs::directory_iterator(folder))
+    images += entry.path().extension() == ".png" ? 1 : 0;
+  for (std::int64_t k = 0; k < images; ++k)
+    if (!fs::exists(folder / pair_name(k)))
+      throw InputError((folder / pair_name(k)).string() +
+                       ": no such file, though the folder holds " + std::to_string(images) +
+                       " images");
+}
+
 }  // namespace
 
 KittiImagesSummary import_kitti_images(const std::string& directory, const std::string& rawlog,
@@ -147,10 +175,13 @@ KittiImagesSummary import_kitti_images(const std::string& directory, const std::
       read_calibration(find_input_file(directory, "calib.txt"), folders[0].filename() == "image_2");
   const std::vector<double> times = read_times(directory);
   const std::vector<SpatialPose> poses = read_poses(directory);
+  require_all_images(folders[0]);
+  remove_truth_beside(rawlog);
   const fs::path images = fs::path(rawlog).replace_extension().string() + "_Images";
   fs::create_directories(images);
   mrpt::io::CFileGZOutputStream out;
   if (!out.open(rawlog)) throw std::runtime_error(rawlog + ": cannot be written");
+  IncompleteFile unfinished(rawlog);
   auto archive = mrpt::serialization::archiveUniquePtrFrom(out);
   KittiImagesSummary summary;
   summary.baseline = camera.rightCameraPose.x;
@@ -187,7 +218,7 @@ KittiImagesSummary import_kitti_images(const std::string& directory, const std::
     throw InputError(folders[0].string() + ": holds no 000000.png");
   archive.reset();
   out.close();
-  remove_truth_beside(rawlog);
+  unfinished.complete();
   write_truth_beside(rawlog, truth, notes_text(directory, summary.pairs, summary.baseline));
   return summary;
 }

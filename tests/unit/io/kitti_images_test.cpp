@@ -121,6 +121,16 @@ TEST_F(KittiImages, RejectsWhatIsNoStereoData) {
   EXPECT_NE(rejection().find("no folders"), std::string::npos) << rejection();
 }
 
+TEST_F(KittiImages, AMissingImageIsNotTheEndAndLeavesNoLog) {
+  fs::remove(data() / "image_l" / "000001.png");
+  EXPECT_NE(rejection().find("000001.png: no such file"), std::string::npos) << rejection();
+  EXPECT_FALSE(fs::exists(rawlog()));
+  save("image_l", 1, 120);
+  fs::resize_file(data() / "image_l" / "000002.png", 20);
+  EXPECT_NE(rejection().find("000002.png"), std::string::npos) << rejection();
+  EXPECT_FALSE(fs::exists(rawlog()));
+}
+
 TEST_F(KittiImages, StopsWhenAskedTo) {
   int asked = 0;
   const auto summary = import_kitti_images(data().string(), rawlog(), [&] { return ++asked > 2; });

@@ -17,6 +17,7 @@
 #include <libslam/pipeline/pipeline.hpp>
 #include <libslam/pipeline/process_usage.hpp>
 #include <libslam/pipeline/run.hpp>
+#include <libslam/policy/noise_warnings.hpp>
 #include <libslam/result/atomic_file.hpp>
 #include <libslam/result/recorder.hpp>
 #include <libslam/result/trajectory.hpp>
@@ -210,6 +211,8 @@ class Run {
                          " measurements left out as unusable");
     warn_of_idle_schedule(warnings);
     warn_of_unused_sightings(warnings);
+    const auto about_noise = warnings_about(pipeline_.filter().noise());
+    warnings.insert(warnings.end(), about_noise.begin(), about_noise.end());
     fill_timing(summary);
     summary.health.features = pipeline_.frontend().figures();
     const Eigen::MatrixXd cov = pipeline_.filter().covariance();

@@ -10,9 +10,9 @@ using namespace libslam::test;
 
 namespace {
 
-/// Bounds of the issue: mean over batches of the steps inside the 95 % band of fifty runs (NEES is
-/// correlated in time, so that even the ideal filter is inside for .79-.99 of the steps, batch by
-/// batch), runs inside the 95 % ellipsoid, NEES averaged over time (ideal 3).
+/// Bounds of the specification: mean over batches of the steps inside the 95 % band of fifty runs
+/// (NEES is correlated in time, so that even the ideal filter is inside for .79-.99 of the steps,
+/// batch by batch), runs inside the 95 % ellipsoid, NEES averaged over time (ideal 3).
 bool is_consistent(const CampaignRun& run, const std::string& variant) {
   const auto& cell = run.cell(variant);
   const double in_band = cell["nees"]["fraction_in_band"];

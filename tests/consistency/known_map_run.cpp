@@ -137,14 +137,15 @@ LocalizationFigures pooled(const std::vector<std::vector<std::unique_ptr<Localiz
 }  // namespace
 
 std::map<std::string, LocalizationFigures> localize(
-    const Scenario& scenario, const std::map<std::string, Parameters>& filters, int drives) {
+    const Scenario& scenario, const std::map<std::string, Parameters>& filters, int drives,
+    std::uint64_t first_seed) {
   std::vector<std::vector<std::unique_ptr<Localizer>>> done(static_cast<std::size_t>(drives));
   std::vector<std::jthread> threads;
   const std::size_t workers = std::max(1U, std::thread::hardware_concurrency());
   for (std::size_t worker = 0; worker < workers; ++worker)
     threads.emplace_back([&, worker] {
       for (std::size_t i = worker; i < done.size(); i += workers)
-        done[i] = drive(scenario, filters, i + 1);
+        done[i] = drive(scenario, filters, first_seed + i);
     });
   threads.clear();
   std::map<std::string, LocalizationFigures> figures;

@@ -73,7 +73,7 @@ TEST_F(SlamEvaluate, ComparesWithRelations) {
   for (std::getline(rows, first); std::getline(rows, line);) last = line;
   const std::string times = first.substr(0, first.find(' ')) + " " + last.substr(0, last.find(' '));
   const Outcome table =
-      evaluate(run + " --relations " + write("x.relations", times + " 1000 0 0 0 0 0 0\n"));
+      evaluate(run + " --relations " + write("x.relations", times + " 1000 0 0 0 0 0\n"));
   EXPECT_EQ(table.code, 0) << table.err;
   EXPECT_NE(table.out.find("relations, translation [m]"), std::string::npos) << table.out;
   const Outcome json = evaluate("--json " + run + " --relations " + path("x.relations"));

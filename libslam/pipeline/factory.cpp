@@ -27,6 +27,7 @@
 #include <libslam/pipeline/policy_factory.hpp>
 #include <libslam/policy/sage_husa.hpp>
 #include <libslam/state/chi_square.hpp>
+#include <libslam/state/planar_pose.hpp>
 
 namespace libslam {
 
@@ -158,7 +159,7 @@ EkfSlamParts make_filter_parts(const Parameters& p, const TrueState* truth) {
     parts.implied_input.emplace(p.policies.implied_input.probability);
   if (p.filter.delayed_pose_distance > 0.0)
     parts.delayed.emplace(DelayedPoseSpacing{p.filter.delayed_pose_distance,
-                                             p.filter.delayed_pose_turn_deg * kPi / 180.0});
+                                             to_radians(p.filter.delayed_pose_turn_deg)});
   const BlockSpec pose = parts.motion->pose_spec();
   parts.map = make_map_start(p.map);
   if (parts.map && !parts.map->at_saved_pose) parts.start = start_pose(pose, p.map);

@@ -7,7 +7,7 @@
 #include <libslam/io/truth_reader.hpp>
 #include <libslam/pipeline/factory.hpp>
 #include <libslam/pipeline/simulation.hpp>
-#include <libslam/simulation/planar_pose.hpp>
+#include <libslam/state/planar_pose.hpp>
 
 namespace libslam {
 

@@ -12,6 +12,11 @@
 
 namespace libslam::test {
 
+struct LocalizationFilter {
+  Parameters parameters;              ///< complete
+  bool knows_the_noise_step = false;  ///< is given the true R at every time
+};
+
 /// One filter, over many drives.
 struct LocalizationFigures {
   double rmse_position = 0.0;  ///< over all observations of all drives [m]
@@ -21,9 +26,9 @@ struct LocalizationFigures {
   std::vector<double> sigma_range;
 };
 
-/// Drives with seeds `first_seed` and on; `filters` by name, their parameters complete.
+/// Drives with seeds `first_seed` and on; `filters` by name.
 std::map<std::string, LocalizationFigures> localize(
-    const Scenario& scenario, const std::map<std::string, Parameters>& filters, int drives,
+    const Scenario& scenario, const std::map<std::string, LocalizationFilter>& filters, int drives,
     std::uint64_t first_seed = 1);
 
 }  // namespace libslam::test

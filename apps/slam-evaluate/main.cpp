@@ -28,7 +28,7 @@ using evaluate::EvaluatedRun;
 
 struct Arguments {
   std::vector<std::string> runs;
-  std::string truth, truth_map, steps, placement, export_format;
+  std::string truth, truth_map, relations, steps, placement, export_format;
   RunWindow window;
   bool batch = false, json = false, csv = false, quiet = false, verbose = false;
   int on_line_steps = 0;
@@ -49,6 +49,7 @@ TruthFiles truth_files_for(const RunSummary& summary, const Arguments& arguments
     files.notes_describe_path = false;
   }
   if (!arguments.truth_map.empty()) files.landmarks = arguments.truth_map;
+  if (!arguments.relations.empty()) files.relations = arguments.relations;
   return files;
 }
 
@@ -90,10 +91,15 @@ EvaluatedRun evaluate_run(const fs::path& directory, const Arguments& arguments,
   }
   run.summary.truth = compare_with_truth(recorded, truth, identity_of(directory), arguments.window,
                                          placement_of(arguments));
+  if (const fs::path smoothed = directory / "trajectory_smoothed.tum"; fs::exists(smoothed))
+    run.summary.truth->relations_smoothed =
+        compare_relations(read_true_path(smoothed), truth.relations);
   if (!truth.path.poses.empty() && !run.summary.truth->path)
     warning = directory.string() +
               ": no pose of the run, or of the part of it that was asked for, "
               "is near a true one in time";
+  else if (!truth.relations.empty() && !run.summary.truth->relations)
+    warning = directory.string() + ": the run has no poses at the times of the relations";
   return run;
 }
 
@@ -157,6 +163,9 @@ int main(int argc, char** argv) {
       "True path (TUM, or the text form of MRPT); default: beside the rawlog of each run");
   app.add_option("--truth-map", arguments.truth_map,
                  "True landmarks (id,x,y[,z], or the text form of MRPT)");
+  app.add_option("--relations", arguments.relations,
+                 "Relations of the Freiburg SLAM benchmark (t1 t2 x y z roll pitch yaw, times of "
+                 "the source); default: beside the rawlog of each run");
   auto* steps = app.add_option("--steps", arguments.steps,
                                "Path figures of the steps FIRST:LAST only (placed as a whole run)");
   auto* from = app.add_option("--from", arguments.window.from_s,

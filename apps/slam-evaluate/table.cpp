@@ -58,6 +58,12 @@ Getter of_relative(double RelativeErrors::*figure) {
                                   [=](const RelativeErrors& r) { return r.*figure; });
 }
 
+using Relations = std::optional<RelationErrors> TruthComparison::*;
+
+Getter of_relations(Relations path, double RelationErrors::*figure) {
+  return of_truth<RelationErrors>(path, [=](const RelationErrors& r) { return r.*figure; });
+}
+
 Value cpu_ms_per_step(const RunSummary& s) {
   if (s.timing.steps < 1) return std::nullopt;
   return 1e3 * s.timing.cpu_s / static_cast<double>(s.timing.steps);
@@ -99,6 +105,19 @@ void describe_path(std::vector<Description>& list) {
       {"rpe_rot_deg_per_m", "  drift [deg/m]", of_relative(&RelativeErrors::rot_deg_per_m)});
   list.push_back(
       {"poses", "poses matched", of_path([](const PathErrors& p) { return p.poses; }), true});
+}
+
+void describe_relations(std::vector<Description>& list, Relations path, const std::string& name,
+                        const std::string& label) {
+  using E = RelationErrors;
+  list.push_back(
+      {name + "_trans_mean_m", label + ", translation [m]", of_relations(path, &E::trans_mean_m)});
+  list.push_back({name + "_trans_std_m", "  deviation [m]", of_relations(path, &E::trans_std_m)});
+  list.push_back(
+      {name + "_rot_mean_deg", label + ", rotation [deg]", of_relations(path, &E::rot_mean_deg)});
+  list.push_back({name + "_rot_std_deg", "  deviation [deg]", of_relations(path, &E::rot_std_deg)});
+  list.push_back({name + "_matched", "  matched",
+                  of_truth<E>(path, [](const E& r) { return r.matched; }), true});
 }
 
 /// Ideal value of a figure of NEES, by the degrees of freedom of the runs: "(3)", "(3 or 6)".
@@ -185,6 +204,9 @@ std::string pad(const std::string& text, std::size_t width, bool left) {
 std::vector<Figure> figures_of(const std::vector<EvaluatedRun>& runs, bool detailed) {
   std::vector<Description> list;
   describe_path(list);
+  describe_relations(list, &TruthComparison::relations_smoothed, "relations_smoothed",
+                     "smoothed relations");
+  describe_relations(list, &TruthComparison::relations, "relations", "relations");
   describe_consistency(list, runs);
   describe_map(list);
   describe_calibration(list, runs);

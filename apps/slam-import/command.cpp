@@ -4,10 +4,9 @@
 #include <iostream>
 
 CLI::App* add_subcommand(CLI::App& app, CommonArguments& arguments, const std::string& name,
-                         const std::string& text, bool directory_required) {
+                         const std::string& text, const Source& source) {
   CLI::App* sub = app.add_subcommand(name, text);
-  sub->add_option("directory", arguments.directory, "Directory of the data set")
-      ->required(directory_required);
+  sub->add_option(source.name, arguments.directory, source.text)->required(source.required);
   sub->add_option("--out", arguments.out, "Rawlog to write; the truth goes beside it")
       ->required()
       ->check([](const std::string& file) {

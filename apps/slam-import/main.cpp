@@ -30,8 +30,10 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   app.footer(
       "Example:\n  slam-import mrclam MRCLAM_Dataset6 --robot 1 --out mrclam6_r1.rawlog\n"
-      "Writes X.rawlog, X.truth.json and, where known, X.truth.tum and X.landmarks.csv.");
+      "Writes X.rawlog, X.truth.json and, where known, X.truth.tum, X.landmarks.csv and "
+      "X.relations.");
   add_planar_data_sets(app, arguments, commands);
+  add_laser_data_sets(app, arguments, commands);
   add_spatial_data_sets(app, arguments, commands);
   return run_program(app, argc, argv, [&] { return run_chosen(commands, arguments); },
                      {kCommandLine, kCommandLine});

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include <libslam/io/importers/brenner.hpp>
 #include <libslam/io/importers/censi.hpp>
 #include <libslam/io/importers/csv_log.hpp>
 #include <libslam/io/importers/imported_log.hpp>
@@ -33,6 +34,7 @@ struct Arguments {
   VictoriaParkOptions park;
   CsvLogOptions csv;
   CensiOptions censi;
+  BrennerOptions brenner;
 };
 
 /// The factors of `--distort`, by name. Throws std::invalid_argument.
@@ -110,6 +112,13 @@ ImportedLog load_censi(const std::string& directory, const Arguments& arguments)
   return import_censi(directory, arguments.censi);
 }
 
+/// --track is the nominal one here; wheels are not distorted but by it.
+ImportedLog load_brenner(const std::string& directory, const Arguments& arguments) {
+  if (!arguments.distortions.empty())
+    throw std::invalid_argument("--distort: choose another --nominal-track instead");
+  return import_brenner(directory, arguments.brenner);
+}
+
 void report(const CommonArguments& arguments, const ImportedLog& log) {
   if (arguments.quiet) return;
   std::size_t sightings = 0;
@@ -117,8 +126,8 @@ void report(const CommonArguments& arguments, const ImportedLog& log) {
   std::cout << arguments.out << ": " << log.scenario << ", " << log.odometry.size()
             << " odometry readings, " << log.sensor_path.size() << " sensor poses, "
             << log.scans.size() << " scans with " << sightings << " landmark sightings, "
-            << log.truth.path.poses.size() << " true poses, " << log.truth.landmarks.size()
-            << " true landmarks\n";
+            << log.laser_scans.size() << " laser scans, " << log.truth.path.poses.size()
+            << " true poses, " << log.truth.landmarks.size() << " true landmarks\n";
   print_notes(arguments, log.parameters, log.remarks);
 }
 
@@ -135,11 +144,12 @@ class PlanarDataSets {
   void add_lost_in_the_woods();
   void add_victoria_park();
   void add_censi();
+  void add_brenner();
   void add_csv();
 
  private:
   CLI::App* add(const std::string& name, const std::string& text, Load load,
-                bool directory_required = true);
+                const Source& source = {});
 
   CLI::App& app_;
   CommonArguments& common_;
@@ -148,8 +158,8 @@ class PlanarDataSets {
 };
 
 CLI::App* PlanarDataSets::add(const std::string& name, const std::string& text, Load load,
-                              bool directory_required) {
-  auto* sub = add_subcommand(app_, common_, name, text, directory_required);
+                              const Source& source) {
+  auto* sub = add_subcommand(app_, common_, name, text, source);
   sub->add_flag("--strip-ids", arguments_->strip_ids, "Remove the identities of the landmarks");
   sub->add_option(
          "--distort", arguments_->distortions,
@@ -196,11 +206,13 @@ void PlanarDataSets::add_victoria_park() {
   auto* park = add("victoria-park", "Victoria Park, Sydney", load_victoria_park);
   park->add_option("--association", arguments_->park.association,
                    "none: tree detections; known: identified trees; isam: relative odometry and "
-                   "landmarks with covariances, as pairs")
+                   "landmarks with covariances, as pairs; raw_scans: no detections, but the scans "
+                   "of the laser")
       ->transform(CLI::CheckedTransformer(
           std::map<std::string, Association>{{"none", Association::kNone},
                                              {"known", Association::kKnown},
-                                             {"isam", Association::kIsam}}));
+                                             {"isam", Association::kIsam},
+                                             {"raw_scans", Association::kRawScans}}));
   park->add_option("--steering", arguments_->park.steering,
                    "Published steering calibration: aa3 or drs")
       ->transform(CLI::CheckedTransformer(
@@ -228,8 +240,27 @@ void PlanarDataSets::add_censi() {
       ->capture_default_str();
 }
 
+void PlanarDataSets::add_brenner() {
+  auto* brenner = add("brenner", "LEGO robot with a laser, SLAM lectures", load_brenner);
+  brenner
+      ->add_option("--nominal-track", arguments_->brenner.track_width,
+                   "Track width that the odometry poses are computed with [m]")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  brenner
+      ->add_option("--scan-delay", arguments_->brenner.scan_delay,
+                   "Scans are stamped so much later than ticks [s]")
+      ->check(CLI::Range(-5.0, 5.0))
+      ->capture_default_str();
+  brenner
+      ->add_option("--camera-delay", arguments_->brenner.camera_delay,
+                   "Reference positions are stamped so much later than ticks [s]")
+      ->check(CLI::Range(-5.0, 5.0))
+      ->capture_default_str();
+}
+
 void PlanarDataSets::add_csv() {
-  auto* csv = add("csv", "CSV files of one's own", load_csv, false);
+  auto* csv = add("csv", "CSV files of one's own", load_csv, {.required = false});
   csv->footer(
       "The first row of a file names its columns:\n"
       "  odometry.csv   t,x,y,phi | t,v,omega | t,left_ticks,right_ticks\n"
@@ -256,5 +287,6 @@ void add_planar_data_sets(CLI::App& app, CommonArguments& arguments, Commands& c
   sets.add_lost_in_the_woods();
   sets.add_victoria_park();
   sets.add_censi();
+  sets.add_brenner();
   sets.add_csv();
 }

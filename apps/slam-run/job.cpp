@@ -41,6 +41,7 @@ Job load_job(Arguments& arguments) {
   const TruthFiles beside = arguments.rawlog.empty() ? TruthFiles{} : find_truth(arguments.rawlog);
   job.truth.notes = beside.notes;
   job.truth.notes_describe_path = job.truth.path.empty() && arguments.truth.empty();
+  job.truth.relations = beside.relations;
   if (job.truth.path.empty()) job.truth.path = beside.path;
   if (job.truth.landmarks.empty()) job.truth.landmarks = beside.landmarks;
   if (!arguments.truth.empty()) job.truth.path = arguments.truth;

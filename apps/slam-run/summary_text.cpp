@@ -15,6 +15,11 @@ std::string number(double value, const char* format = "%.4g") {
   return text;
 }
 
+void say_relations(const std::string& path, const RelationErrors& errors, Console& console) {
+  console.say("  relations, " + path + ": " + number(errors.trans_mean_m) + " m, " +
+              number(errors.rot_mean_deg) + " deg");
+}
+
 }  // namespace
 
 void report(const RunSummary& summary, const fs::path& directory, Console& console) {
@@ -32,6 +37,10 @@ void report(const RunSummary& summary, const fs::path& directory, Console& conso
     if (path.aligned)
       console.say("  path error (RMSE): " + number(path.aligned->rmse_m) + " m aligned");
   }
+  if (summary.truth && summary.truth->relations_smoothed)
+    say_relations("smoothed path", *summary.truth->relations_smoothed, console);
+  if (summary.truth && summary.truth->relations)
+    say_relations("on line", *summary.truth->relations, console);
   if (summary.truth && summary.truth->map && summary.truth->map->rmse_aligned_m)
     console.say("  map error (RMSE): " + number(*summary.truth->map->rmse_aligned_m) +
                 " m aligned, " + std::to_string(summary.truth->map->missed) + " missed, " +

@@ -16,7 +16,7 @@
 #include <libslam/result/step_statistics.hpp>
 #include <libslam/result/truth_comparison.hpp>
 #include <libslam/result/truth_json.hpp>
-#include <libslam/simulation/planar_pose.hpp>
+#include <libslam/state/planar_pose.hpp>
 
 namespace libslam {
 

@@ -18,13 +18,23 @@ struct TrueLandmark {
   Eigen::VectorXd position;  ///< x, y[, z] [m]
 };
 
-/// True path, map and calibration; each part may be missing (empty).
+/// Where a robot was at one time, seen from where it was at another.
+struct PoseRelation {
+  double from_time = 0.0, to_time = 0.0;                ///< [s]
+  Eigen::Vector3d T_from_to = Eigen::Vector3d::Zero();  ///< x [m], y [m], phi [rad]
+};
+
+/// True path, map, calibration and relations; each part may be missing (empty).
 struct GroundTruth {
   Trajectory path;
   std::vector<TrueLandmark> landmarks;
   std::map<std::string, double> calibration;  ///< parameter name -> true value
 
-  bool empty() const { return path.poses.empty() && landmarks.empty() && calibration.empty(); }
+  std::vector<PoseRelation> relations;
+
+  bool empty() const {
+    return path.poses.empty() && landmarks.empty() && calibration.empty() && relations.empty();
+  }
 };
 
 }  // namespace libslam

@@ -1,5 +1,5 @@
 #pragma once
-// What a correction leaves behind of its measurements.
+// What a correction knows of its measurements once it has factored S = H P- H^T + R.
 
 #include <cstddef>
 
@@ -7,13 +7,16 @@
 
 namespace libslam {
 
-/// One measurement of a correction, seen from both sides of it.
+/// One measurement of a correction, seen from both sides of it. With the joint S, after the
+/// correction its residual is e = R (S^-1 nu) and the covariance of its prediction
+/// H P+ H^T = R - R S^-1 R, each by the rows and columns of the measurement. Exact where every
+/// block was corrected.
 struct Postfit {
   std::size_t feature = 0;           ///< position in the features of the observation
   MeasurementVector innovation;      ///< nu = z - h(x-)
-  MeasurementMatrix cov_innovation;  ///< S = H P- H^T + R, its own rows and columns
-  MeasurementVector residual;        ///< e = R S^-1 nu, rows of its own in the joint S
-  MeasurementMatrix cov_predicted;   ///< C = H P+ H^T = R - R S^-1 R, its own rows and columns
+  MeasurementMatrix cov_innovation;  ///< S, its own rows and columns
+  MeasurementVector weighted;        ///< S^-1 nu, its own rows
+  MeasurementMatrix information;     ///< S^-1, its own rows and columns
 };
 
 }  // namespace libslam

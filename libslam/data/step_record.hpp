@@ -28,6 +28,7 @@ struct AdaptedNoise {
   std::string name;         ///< sensor channel and component, e.g. "range"
   double sigma = 0.0;       ///< adapted standard deviation, in the unit of the component
   double configured = 0.0;  ///< what the run started from
+  std::string unit = {};    ///< of both; empty: a ratio
 };
 
 /// A landmark of the estimated map.

@@ -2,26 +2,9 @@
 #include <stdexcept>
 
 #include <libslam/filter/delayed_poses.hpp>
+#include <libslam/state/planar_pose.hpp>
 
 namespace libslam {
-
-namespace {
-
-/// a^-1 b of planar poses.
-Eigen::Vector3d between(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-  const Eigen::Rotation2Dd R_a_world(-a.z());
-  Eigen::Vector3d d;
-  d << R_a_world * (b.head<2>() - a.head<2>()), wrap_angle(b.z() - a.z());
-  return d;
-}
-
-Eigen::Vector3d compose(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-  Eigen::Vector3d c;
-  c << a.head<2>() + Eigen::Rotation2Dd(a.z()) * b.head<2>(), wrap_angle(a.z() + b.z());
-  return c;
-}
-
-}  // namespace
 
 DelayedPoses::DelayedPoses(const DelayedPoseSpacing& spacing) : spacing_(spacing) {
   if (!(spacing.distance > 0.0) || !(spacing.turn > 0.0))
@@ -39,19 +22,14 @@ void DelayedPoses::remember(GaussianState& state, BlockId pose, double time) {
     restarted_ = false;
     keep(state, pose);
   }
-  const Eigen::Vector3d step = between(state.estimate(blocks_.back()), state.estimate(pose));
+  const Eigen::Vector3d step = relative_pose(state.estimate(blocks_.back()), state.estimate(pose));
   steps_.push_back({time, step});
   if (step.head<2>().norm() >= spacing_.distance || std::abs(step.z()) >= spacing_.turn)
     keep(state, pose);
 }
 
 void DelayedPoses::keep(GaussianState& state, BlockId pose) {
-  identity_.estimate = state.estimate(pose);
-  identity_.wrt.clear();
-  identity_.wrt.add(pose, 3, 3).setIdentity();
-  identity_.cov_noise.setZero(3, 3);
-  const std::string name = "pose_" + std::to_string(blocks_.size());
-  blocks_.push_back(state.augment({name, Chart::kSE2, 3, WorldRole::kPose}, identity_));
+  blocks_.push_back(state.clone(pose, "pose_" + std::to_string(blocks_.size())));
   segments_.push_back({steps_.size(), true});
 }
 
@@ -65,12 +43,13 @@ void DelayedPoses::append_segment(const GaussianState& state, std::size_t segmen
   Eigen::Vector3d misclosure = Eigen::Vector3d::Zero();
   if (!last && segments_[segment].joined) {
     const Eigen::Vector3d next = state.estimate(blocks_[segment + 1]);
-    misclosure = next - compose(T_world_kept, steps_[end - 1].T_kept_robot);
+    misclosure = next - compose_poses(T_world_kept, steps_[end - 1].T_kept_robot);
     misclosure.z() = wrap_angle(misclosure.z());
   }
   for (std::size_t i = begin; i < end; ++i) {
     const double fraction = static_cast<double>(i + 1 - begin) / static_cast<double>(end - begin);
-    Eigen::Vector3d pose = compose(T_world_kept, steps_[i].T_kept_robot) + fraction * misclosure;
+    Eigen::Vector3d pose =
+        compose_poses(T_world_kept, steps_[i].T_kept_robot) + fraction * misclosure;
     pose.z() = wrap_angle(pose.z());
     path.times.push_back(steps_[i].time);
     path.poses.push_back(pose);

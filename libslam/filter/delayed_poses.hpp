@@ -5,8 +5,8 @@
 // everything and moves with each later correction, so that at the end of a log the clones are where
 // all measurements put them, not only the earlier ones. Between two clones the path is what it was
 // on line, relative to the first of them; the misclosure at the second is spread evenly over the
-// steps in between. State augmentation with delayed states: Leutenegger & Siegwart; Eustice,
-// Singh & Leonard 2006, "Exactly sparse delayed-state filters".
+// steps in between. Source: Eustice, Singh & Leonard, "Exactly sparse delayed-state filters for
+// view-based SLAM", IEEE Trans. Robotics 22(6), 2006 (the augmentation, in covariance form here).
 
 #include <vector>
 
@@ -34,7 +34,6 @@ class DelayedPoses {
   /// The robot was put elsewhere: the next pose is kept, and nothing is spread over the jump.
   void restart() { restarted_ = true; }
 
-  const std::vector<BlockId>& blocks() const { return blocks_; }
   /// The remembered steps, given everything that the filter knows now.
   Trajectory path(const GaussianState& state) const;
 
@@ -56,7 +55,6 @@ class DelayedPoses {
   std::vector<BlockId> blocks_;  // one per segment
   std::vector<Segment> segments_;
   std::vector<Step> steps_;
-  Initialization identity_;
   bool restarted_ = true;
 };
 

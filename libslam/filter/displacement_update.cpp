@@ -21,17 +21,9 @@ DisplacementOutcome DisplacementUpdate::apply(GaussianState& state, Ekf& ekf, Bl
       outcome.correction = ekf.correct(state, pose, {&measurement_, 1}, considered);
     state.remove(*before_);
   }
-  clone(state, pose);
+  before_ = state.clone(pose, "pose_before");
   reading_ = reading;
   return outcome;
-}
-
-void DisplacementUpdate::clone(GaussianState& state, BlockId pose) {
-  identity_.estimate = state.estimate(pose);
-  identity_.wrt.clear();
-  identity_.wrt.add(pose, 3, 3).setIdentity();
-  identity_.cov_noise.setZero(3, 3);
-  before_ = state.augment({"pose_before", Chart::kSE2, 3, WorldRole::kPose}, identity_);
 }
 
 }  // namespace libslam

@@ -37,14 +37,11 @@ class DisplacementUpdate {
                             const Feature& reading);
 
  private:
-  void clone(GaussianState& state, BlockId pose);
-
   std::unique_ptr<DisplacementModel> model_;
   double gate_;
   std::optional<BlockId> before_;  // the clone
   Feature reading_;                // taken there
   LinearizedMeasurement measurement_;
-  Initialization identity_;
 };
 
 }  // namespace libslam

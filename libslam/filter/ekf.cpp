@@ -8,6 +8,7 @@
 #include <Eigen/Cholesky>
 
 #include <libslam/filter/ekf.hpp>
+#include <libslam/state/symmetric_kernel.hpp>
 
 namespace libslam {
 
@@ -27,6 +28,10 @@ PlacedJacobian place(const GaussianState& state, const BlockJacobian& column, In
   if (column.jacobian.rows() != rows || column.jacobian.cols() != state.size(column.block))
     throw_shape(state, column.block, column.jacobian, rows);
   return {state.offset(column.block), column.jacobian};
+}
+
+Index padded(Index size) {
+  return (size + kKernelTile - 1) / kKernelTile * kKernelTile;
 }
 
 }  // namespace
@@ -131,30 +136,40 @@ void Ekf::expect(const GaussianState& state, BlockId pose,
   }
 }
 
-Correction Ekf::correct(GaussianState& state, BlockId pose,
-                        std::span<const LinearizedMeasurement> measurements,
-                        std::span<const BlockId> considered) {
-  const Correction correction = solve(state, measurements, considered);
-  if (correction.applied) apply(state, pose);
-  return correction;
+bool Ekf::weigh(GaussianState& state, std::span<const LinearizedMeasurement> measurements) {
+  weighed_ = stack(state, measurements);
+  state.covariance().observe(rows_, s_.topLeftCorner(weighed_, weighed_));
+  if (!factorize(measurements, weighed_)) return false;
+  nis_ = squared_distance(weighed_);
+  return true;
 }
 
-Correction Ekf::solve(GaussianState& state, std::span<const LinearizedMeasurement> measurements,
-                      std::span<const BlockId> considered) {
-  step_size_ = 0;
-  if (measurements.empty()) return {};
-  const Index m = stack(state, measurements);
-  state.covariance().observe(rows_, s_.topLeftCorner(m, m));
-  if (!factorize(measurements, m)) return {};
-  const double nis = squared_distance(m);
-  const Index n = state.dimension();
+Correction Ekf::solve(GaussianState& state, std::span<const BlockId> considered) {
+  const Index m = weighed_, n = state.dimension();
   if (delta_.size() < n) delta_.resize(2 * n);
   considered_.clear();
   for (const BlockId block : considered)
     for (Index i = 0; i < state.size(block); ++i) considered_.push_back(state.offset(block) + i);
   state.covariance().gain(s_.topLeftCorner(m, m), white_.head(m), considered_, delta_.head(n));
   step_size_ = n;
-  return {true, nis, static_cast<int>(m)};
+  return {true, nis_, static_cast<int>(m)};
+}
+
+void Ekf::apply(GaussianState& state, BlockId pose) {
+  state.covariance().correct(move(state, pose));
+}
+
+ChartChange Ekf::move(GaussianState& state, BlockId pose) const {
+  return frame_->retract(state, pose, step());
+}
+
+Correction Ekf::correct(GaussianState& state, BlockId pose,
+                        std::span<const LinearizedMeasurement> measurements,
+                        std::span<const BlockId> considered) {
+  if (measurements.empty() || !weigh(state, measurements)) return {};
+  const Correction correction = solve(state, considered);
+  apply(state, pose);
+  return correction;
 }
 
 void Ekf::spread(GaussianState& state, BlockId pose, std::span<const BlockId> shadows,
@@ -181,54 +196,64 @@ void Ekf::spread(GaussianState& state, BlockId pose, std::span<const BlockId> sh
   apply(state, pose);
 }
 
-void Ekf::apply(GaussianState& state, BlockId pose) {
-  state.covariance().correct(move(state, pose));
+/// L^-T, upper triangular, in whole tiles; what stands before a tile's own columns is zero.
+void Ekf::invert_factor(Index m) {
+  std::fill_n(divided_.data(), divided_.outerStride() * m, 0.0);
+  divided_.diagonal().head(m).setOnes();
+  for (Index first = 0; first < m; first += kKernelTile)
+    symmetric_kernels().front().divide({&divided_(first, first), divided_.outerStride(),
+                                        std::min<Index>(kKernelTile, m - first), &s_(first, first),
+                                        s_.outerStride(), m - first});
 }
 
-ChartChange Ekf::move(GaussianState& state, BlockId pose) const {
-  return frame_->retract(state, pose, step());
-}
-
-// With W = L^-1 [0 .. R_i .. 0]^T, zero above the rows of i:  e_i = W^T L^-1 nu, C_i = R_i - W^T W.
-// Plain loops: the blocks are so small that general products and solvers cost several times more.
-void Ekf::look_back(std::span<const LinearizedMeasurement> measurements,
-                    std::vector<Postfit>& out) {
-  Index m = 0;
-  for (const auto& measurement : measurements) m += measurement.innovation.size();
-  reserve_divided(m);
-  out.resize(measurements.size());
-  Index row = 0;
-  for (std::size_t i = 0; i < measurements.size(); ++i) {
-    const LinearizedMeasurement& measurement = measurements[i];
-    const Index rows = measurement.innovation.size();
-    Postfit& postfit = out[i];
-    postfit.innovation = measurement.innovation;
-    postfit.residual.resize(rows);
-    postfit.cov_predicted = measurement.cov;
-    postfit.cov_innovation = own_[i];
-    for (Index c = 0; c < rows; ++c) {
-      divide(measurement.cov, row, c, m);
-      const auto w = divided_.col(c).segment(row, m - row);
-      postfit.residual[c] = w.dot(white_.segment(row, m - row));
-      for (Index k = 0; k <= c; ++k) {
-        postfit.cov_predicted(k, c) -= w.dot(divided_.col(k).segment(row, m - row));
-        postfit.cov_predicted(c, k) = postfit.cov_predicted(k, c);
-      }
+/// S^-1 nu and the first kDiagonals diagonals of S^-1 = L^-T L^-1: sums of products of neighbours
+/// within the columns of L^-T, four rows at a time.
+template <int kDiagonals>
+void Ekf::invert_blocks(Index m) {
+  constexpr int kLanes = 4;
+  using Lanes = Eigen::Array<double, kLanes, 1>;
+  for (Index r = 0; r < m; r += kLanes) {
+    Lanes weighted = Lanes::Zero();
+    std::array<Lanes, kDiagonals> sums;
+    sums.fill(Lanes::Zero());
+    for (Index k = r; k < m; ++k) {
+      const double* column = &divided_(r, k);
+      const Lanes x = Eigen::Map<const Lanes>(column);
+      weighted += white_[k] * x;
+      for (std::size_t b = 0; b < kDiagonals; ++b)
+        sums[b] += x * Eigen::Map<const Lanes>(column + b);
     }
-    row += rows;
+    weighted_.segment<kLanes>(r) = weighted;
+    for (std::size_t b = 0; b < kDiagonals; ++b)
+      diagonals_.col(static_cast<Index>(b)).segment<kLanes>(r) = sums[b];
   }
 }
 
-/// Column `c` of divided_, from `row` to `m`: L^-1 times that column of `cov`, which stands at
-/// `row`.
-void Ekf::divide(const MeasurementMatrix& cov, Index row, Index c, Index m) {
-  auto x = divided_.col(c);
-  x.segment(row, cov.rows()) = cov.col(c);
-  x.segment(row + cov.rows(), m - row - cov.rows()).setZero();
-  for (Index j = row; j < m; ++j) {
-    const auto l = s_.col(j).segment(j + 1, m - j - 1);
-    x[j] /= s_(j, j);
-    x.segment(j + 1, m - j - 1) -= x[j] * l;
+void Ekf::look_back(std::span<const LinearizedMeasurement> measurements,
+                    std::vector<Postfit>& out) {
+  const Index m = weighed_;
+  reserve_divided(m);
+  invert_factor(m);
+  Index widest = 0;
+  for (const auto& measurement : measurements)
+    widest = std::max(widest, measurement.innovation.size());
+  if (widest <= 2)
+    invert_blocks<2>(m);
+  else
+    invert_blocks<kMaxMeasurementDimension>(m);
+  out.resize(measurements.size());
+  Index row = 0;
+  for (std::size_t i = 0; i < measurements.size(); ++i) {
+    const Index rows = measurements[i].innovation.size();
+    Postfit& postfit = out[i];
+    postfit.innovation = measurements[i].innovation;
+    postfit.cov_innovation = own_[i];
+    postfit.weighted = weighted_.segment(row, rows);
+    postfit.information.resize(rows, rows);
+    for (Index c = 0; c < rows; ++c)
+      for (Index r = c; r < rows; ++r)
+        postfit.information(r, c) = postfit.information(c, r) = diagonals_(row + c, r - c);
+    row += rows;
   }
 }
 
@@ -251,8 +276,11 @@ BlockEvidence Ekf::look_back(std::span<const LinearizedMeasurement> measurements
 }
 
 void Ekf::reserve_divided(Index m) {
-  constexpr Index kWidest = std::max<Index>(kMaxMeasurementDimension, kMaxTangent);
-  if (divided_.rows() < m) divided_.resize(2 * m, kWidest);
+  if (divided_.cols() >= m) return;
+  const Index capacity = std::max<Index>(2 * m, kMaxTangent);
+  divided_.setZero(padded(capacity) + kMaxMeasurementDimension, capacity);
+  diagonals_.resize(padded(capacity), kMaxMeasurementDimension);
+  weighted_.resize(padded(capacity));
 }
 
 }  // namespace libslam

@@ -63,26 +63,27 @@ class Ekf {
                      std::span<const LinearizedMeasurement> measurements,
                      std::span<const BlockId> considered = {});
 
+  /// The three parts of `correct`, for those who look in between. `weigh` leaves the state alone
+  /// and may be repeated, say with another R; false: S is not positive definite.
+  bool weigh(GaussianState& state, std::span<const LinearizedMeasurement> measurements);
+  /// After a `weigh` that succeeded: computes the step, and leaves the state alone, too.
+  Correction solve(GaussianState& state, std::span<const BlockId> considered = {});
+  /// Takes the step; nothing else may have happened to the covariance since `weigh`.
+  void apply(GaussianState& state, BlockId pose);
+  /// The step that was solved last: an additive error of the whole state. Valid until the next one.
+  Eigen::Map<const Eigen::VectorXd> step() const { return {delta_.data(), step_size_}; }
+  /// Moves the estimates alone by that step, as `apply` does; returns the change of the error that
+  /// goes with it (ErrorFrame::retract).
+  [[nodiscard]] ChartChange move(GaussianState& state, BlockId pose) const;
+
   /// Takes information back: P <- P + B M B^T, delta = B root white, with B the covariance of the
   /// state with `shadows` (filter/hindsight.hpp) and M = root root^T. The blocks in `kept` do not
   /// change.
   void spread(GaussianState& state, BlockId pose, std::span<const BlockId> shadows,
               const MatrixRef& root, const VectorRef& white, std::span<const BlockId> kept);
 
-  /// The two halves of `correct`, for those who look at the step before they take it. `solve`
-  /// leaves the state alone; `applied` says whether there is a step.
-  Correction solve(GaussianState& state, std::span<const LinearizedMeasurement> measurements,
-                   std::span<const BlockId> considered = {});
-  /// The step that was solved last: an additive error of the whole state. Valid until the next one.
-  Eigen::Map<const Eigen::VectorXd> step() const { return {delta_.data(), step_size_}; }
-  /// Takes that step; nothing else may have happened to the covariance in between.
-  void apply(GaussianState& state, BlockId pose);
-  /// Moves the estimates alone by that step, as `apply` does; returns the change of the error that
-  /// goes with it (ErrorFrame::retract).
-  [[nodiscard]] ChartChange move(GaussianState& state, BlockId pose) const;
-
-  /// After a correction that was applied, with the same measurements: what it left behind of each,
-  /// without the position of its feature. Exact where no block was considered.
+  /// After `weigh` or a correction that was applied, with the same measurements: each of them seen
+  /// through the S of all, without the position of its feature.
   void look_back(std::span<const LinearizedMeasurement> measurements, std::vector<Postfit>& out);
   /// The same of one block: what the measurements said about it.
   BlockEvidence look_back(std::span<const LinearizedMeasurement> measurements, BlockId block,
@@ -99,7 +100,9 @@ class Ekf {
   double squared_distance(Eigen::Index m);
 
   void reserve_divided(Eigen::Index m);
-  void divide(const MeasurementMatrix& cov, Eigen::Index row, Eigen::Index c, Eigen::Index m);
+  void invert_factor(Eigen::Index m);
+  template <int kDiagonals>
+  void invert_blocks(Eigen::Index m);
 
   std::unique_ptr<ErrorFrame> frame_;
   std::vector<PlacedJacobian> placed_;
@@ -107,9 +110,12 @@ class Ekf {
   std::vector<Eigen::Index> considered_;
   std::vector<MeasurementMatrix> own_;  // diagonal blocks of S
   Eigen::MatrixXd s_;
-  Eigen::MatrixXd divided_;  // L^-1 times R of one measurement, or the columns of one block
-  Eigen::VectorXd nu_, white_, delta_;
+  Eigen::MatrixXd divided_;    // L^-T, or L^-1 times the columns of one block; whole tiles
+  Eigen::MatrixXd diagonals_;  // of S^-1: the main one, the one below it, ...
+  Eigen::VectorXd nu_, white_, weighted_, delta_;
+  Eigen::Index weighed_ = 0;  // rows
   Eigen::Index step_size_ = 0;
+  double nis_ = 0.0;
 };
 
 }  // namespace libslam

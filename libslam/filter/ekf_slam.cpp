@@ -210,15 +210,31 @@ void EkfSlam::linearize_pairs(std::span<const Feature> features) {
   if (parts_.disturbance || parts_.implied_input) linearize(Outcome::kGated);
 }
 
+bool EkfSlam::weigh() {
+  if (!ekf_.weigh(state_, accepted())) return false;
+  if (!parts_.noise || disturbed()) return true;
+  for (;;) {
+    ekf_.look_back(accepted(), postfits_);
+    for (std::size_t i = 0; i < used_.size(); ++i) postfits_[i].feature = used_[i];
+    if (!parts_.noise->observe(adapted_, postfits_)) return true;
+    for (std::size_t i = 0; i < used_.size(); ++i) measured_[i].cov = adapted_[used_[i]].cov;
+    if (!ekf_.weigh(state_, accepted())) return false;
+  }
+}
+
 Correction EkfSlam::correct_with_pairs(std::span<const Feature> features) {
-  if (!parts_.iteration) return ekf_.correct(state_, pose_, accepted(), considered());
-  return parts_.iteration->correct(
-      state_, ekf_, pose_, std::span(measured_).first(used_.size()), considered(),
-      [&](std::size_t i, LinearizedMeasurement& measurement) {
-        const BlockId landmark = parts_.registry.landmarks()[verdicts_[used_[i]].landmark].block;
-        linearizer_.linearize(*parts_.measurement, state_, pose_, landmark, features[used_[i]],
-                              measurement);
-      });
+  if (used_.empty() || !weigh()) return {};
+  if (parts_.iteration)
+    return parts_.iteration->correct(
+        state_, ekf_, pose_, std::span(measured_).first(used_.size()), considered(),
+        [&](std::size_t i, LinearizedMeasurement& measurement) {
+          const BlockId landmark = parts_.registry.landmarks()[verdicts_[used_[i]].landmark].block;
+          linearizer_.linearize(*parts_.measurement, state_, pose_, landmark, features[used_[i]],
+                                measurement);
+        });
+  const Correction correction = ekf_.solve(state_, considered());
+  ekf_.apply(state_, pose_);
+  return correction;
 }
 
 void EkfSlam::correct(std::span<const Feature> features, UpdateOutcome& outcome) {
@@ -230,11 +246,6 @@ void EkfSlam::correct(std::span<const Feature> features, UpdateOutcome& outcome)
     outcome.accepted = static_cast<int>(used_.size());
     outcome.nis = correction.nis;
     outcome.nis_dof = correction.dof;
-    if (parts_.noise && !disturbed()) {
-      ekf_.look_back(accepted(), postfits_);
-      for (std::size_t i = 0; i < used_.size(); ++i) postfits_[i].feature = used_[i];
-      parts_.noise->observe(features, postfits_);
-    }
     if (parts_.process) learn_process_noise();
   } else {
     // An innovation covariance that is not positive definite: nothing was used.

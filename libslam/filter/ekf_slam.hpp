@@ -140,10 +140,12 @@ class EkfSlam {
   /// Gives up an observation that implies an impossible motion; the landmarks start anew, unless
   /// they are given.
   void reject_impossible(std::span<const Feature> features, UpdateOutcome& outcome);
-  void correct(std::span<const Feature> features, UpdateOutcome& outcome);
   std::optional<Extent> sighted_part(BlockId landmark, const Feature& feature) const;
   void keep_up();
+  /// How the accepted pairs fit; the noise policy learns from them. False: they cannot be used.
+  bool weigh();
   Correction correct_with_pairs(std::span<const Feature> features);
+  void correct(std::span<const Feature> features, UpdateOutcome& outcome);
   void add_landmarks(std::span<const Feature> features, UpdateOutcome& outcome);
 
   EkfSlamParts parts_;

@@ -38,14 +38,16 @@ Correction IteratedUpdate::correct(GaussianState& state, Ekf& ekf, BlockId pose,
                                    std::span<LinearizedMeasurement> measurements,
                                    std::span<const BlockId> considered,
                                    const Relinearize& relinearize) {
-  Correction correction = ekf.solve(state, measurements, considered);
-  for (int k = 1; correction.applied && k < linearizations_; ++k) {
+  if (measurements.empty() || !ekf.weigh(state, measurements)) return {};
+  Correction correction = ekf.solve(state, considered);
+  for (int k = 1; k < linearizations_; ++k) {
     if (!linearize_there(state, ekf, pose, measurements, relinearize) || agrees(measurements))
       break;
     std::copy(again_.begin(), again_.end(), measurements.begin());
-    correction = ekf.solve(state, measurements, considered);
+    if (!ekf.weigh(state, measurements)) return {};
+    correction = ekf.solve(state, considered);
   }
-  if (correction.applied) ekf.apply(state, pose);
+  ekf.apply(state, pose);
   return correction;
 }
 

@@ -33,7 +33,6 @@ std::array<Eigen::Vector2d, kPointsPerTag> points_of(const DetectedTag& tag) {
 Fiducials::Fiducials(const FrontendParameters& parameters, std::string sensor_label)
     : parameters_(parameters),
       sensor_label_(std::move(sensor_label)),
-      rectifier_(std::make_unique<StereoRectifier>()),
       detector_(make_tag_detector(parameters.fiducials.family, parameters.fiducials.decimate)) {}
 
 Fiducials::~Fiducials() = default;
@@ -46,7 +45,8 @@ void Fiducials::extract(const mrpt::obs::CSensoryFrame& frame, std::vector<Featu
     if (!sensor_label_.empty() && observation->sensorLabel != sensor_label_) continue;
     FeatureBatch batch;
     try {
-      const RectifiedPair pair = rectifier_->rectify(*observation);
+      const int channel = channels_.of(observation->sensorLabel);
+      const RectifiedPair pair = rectifier_of(channel).rectify(*observation);
       const auto left = detector_->detect(pair.left), right = detector_->detect(pair.right);
       auto partner = right.begin();
       for (const DetectedTag& tag : left) {  // both in the order of their ids
@@ -54,7 +54,6 @@ void Fiducials::extract(const mrpt::obs::CSensoryFrame& frame, std::vector<Featu
         if (partner != right.end() && partner->id == tag.id)
           add_points(tag, *partner, pair.camera, batch);
       }
-      const int channel = channels_.of(observation->sensorLabel);
       for (Feature& feature : batch) feature.channel = channel;
     } catch (const UnusableImages& defect) {
       ++unusable_;
@@ -64,6 +63,12 @@ void Fiducials::extract(const mrpt::obs::CSensoryFrame& frame, std::vector<Featu
     observation->imageLeft.unload();
     observation->imageRight.unload();
   }
+}
+
+StereoRectifier& Fiducials::rectifier_of(int channel) {
+  const auto k = static_cast<std::size_t>(channel);
+  while (rectifiers_.size() <= k) rectifiers_.push_back(std::make_unique<StereoRectifier>());
+  return *rectifiers_[k];
 }
 
 void Fiducials::add_points(const DetectedTag& left, const DetectedTag& right,

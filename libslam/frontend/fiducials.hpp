@@ -33,14 +33,15 @@ class Fiducials final : public Frontend {
   std::vector<std::string> warnings() const override { return warnings_; }
 
  private:
+  StereoRectifier& rectifier_of(int channel);
   void add_points(const DetectedTag& left, const DetectedTag& right,
                   const std::shared_ptr<const StereoCamera>& camera, FeatureBatch& batch);
 
   FrontendParameters parameters_;
   std::string sensor_label_;
-  std::unique_ptr<StereoRectifier> rectifier_;
   std::unique_ptr<TagDetector> detector_;
   ChannelNumbers channels_;
+  std::vector<std::unique_ptr<StereoRectifier>> rectifiers_;  ///< by channel: tables are kept
   std::int64_t unusable_ = 0;
   std::vector<std::string> warnings_;
 };

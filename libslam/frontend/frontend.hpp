@@ -26,6 +26,8 @@ class Frontend {
   /// Overwrites `batches`.
   virtual void extract(const mrpt::obs::CSensoryFrame& frame,
                        std::vector<FeatureBatch>& batches) = 0;
+  /// False if a frame can be left out without harm to what is made of the others.
+  virtual bool needs_every_frame() const { return true; }
   /// Measurements left out so far because they were unusable.
   virtual std::int64_t unusable() const = 0;
   /// One line for each of the first defects, and whatever else the user should know.

@@ -39,17 +39,4 @@ inline bool has_depth(const StereoMatch& point) {
   return point.z[2] > 0.0 && point.z[2] >= 3.0 * sigma_d;
 }
 
-/// Position in the camera frame [m] of z = (u, v, d), d > 0.
-inline Eigen::Vector3d triangulate(const StereoCamera& camera, const Eigen::Vector3d& z) {
-  const double depth = camera.fx * camera.baseline / z[2];
-  return {(z[0] - camera.cx) / camera.fx * depth, (z[1] - camera.cy) / camera.fy * depth, depth};
-}
-
-/// (u, v, d) of a point in front of the camera.
-inline Eigen::Vector3d project(const StereoCamera& camera, const Eigen::Vector3d& p_camera) {
-  return {camera.cx + camera.fx * p_camera.x() / p_camera.z(),
-          camera.cy + camera.fy * p_camera.y() / p_camera.z(),
-          camera.fx * camera.baseline / p_camera.z()};
-}
-
 }  // namespace libslam

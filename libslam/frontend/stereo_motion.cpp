@@ -23,21 +23,6 @@ constexpr int kPolishing = 4;
 constexpr double kConverged = 1e-9;
 constexpr double kNearest = 1e-3;  ///< depth [m]
 
-/// d h / d p of h = (u, v, d).
-Eigen::Matrix3d projection_jacobian(const StereoCamera& c, const Eigen::Vector3d& p) {
-  const double i = 1.0 / p.z(), i2 = i * i;
-  Eigen::Matrix3d J;
-  J << c.fx * i, 0.0, -c.fx * p.x() * i2, 0.0, c.fy * i, -c.fy * p.y() * i2, 0.0, 0.0,
-      -c.fx * c.baseline * i2;
-  return J;
-}
-
-Eigen::Matrix3d skew(const Eigen::Vector3d& v) {
-  Eigen::Matrix3d m;
-  m << 0.0, -v.z(), v.y(), v.z(), 0.0, -v.x(), -v.y(), v.x(), 0.0;
-  return m;
-}
-
 /// What a pair says about the motion at some estimate.
 struct Residual {
   Eigen::Vector3d e;
@@ -80,7 +65,7 @@ Matrix6 minimize(const StereoCamera& camera, std::span<const SightingPair> pairs
     for (std::size_t i = 0; i < pairs.size(); ++i) {
       if (!agrees[i] || !linearize(camera, T, pairs[i], r)) continue;
       Eigen::Matrix<double, 3, 6> A;  // d h / d (translation, rotation) applied from the left
-      A << r.J, -r.J * skew(r.p_after);
+      A << r.J, -r.J.rowwise().cross(r.p_after.transpose());  // -J [p]: rows j^T [p] = (j x p)^T
       H += A.transpose() * r.information * A;
       g += A.transpose() * r.information * r.e;
     }
@@ -126,7 +111,7 @@ double disagreement(const StereoCamera& camera, const Eigen::Isometry3d& T_after
 void locate(const StereoCamera& camera, const StereoMatch& point, Eigen::Vector3d& p,
             Eigen::Matrix3d& cov) {
   p = triangulate(camera, point.z);
-  const Eigen::Matrix3d G = projection_jacobian(camera, p).inverse();
+  const Eigen::Matrix3d G = triangulation_jacobian(camera, p, point.z[2]);
   cov = G * covariance_of(point) * G.transpose();
 }
 

@@ -7,6 +7,7 @@
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include <libslam/frontend/png_image.hpp>
 #include <libslam/frontend/stereo_rectification.hpp>
 
 namespace libslam {
@@ -28,13 +29,23 @@ std::string name_of(const mrpt::img::CImage& image, const char* side) {
                                     : std::string(side) + " image";
 }
 
-cv::Mat gray_of(const mrpt::img::CImage& image, const char* side) {
+cv::Mat pixels_of(const mrpt::img::CImage& image, const char* side) {
   cv::Mat pixels;
   try {
+    const bool beside = image.isExternallyStored();
+    const std::string file = beside ? image.getExternalStorageFileAbsolutePath() : std::string();
+    if (is_png_name(file)) return read_png(file, kLargestSide);
     image.asCvMat(pixels, mrpt::img::SHALLOW_COPY);
+  } catch (const DamagedPng& defect) {
+    throw UnusableImages(name_of(image, side) + ": cannot be read: " + defect.what());
   } catch (const std::exception&) {
     throw UnusableImages(name_of(image, side) + ": cannot be read");
   }
+  return pixels;
+}
+
+cv::Mat gray_of(const mrpt::img::CImage& image, const char* side) {
+  const cv::Mat pixels = pixels_of(image, side);
   if (pixels.empty()) throw UnusableImages(name_of(image, side) + ": is empty");
   if (std::max(pixels.rows, pixels.cols) > kLargestSide ||
       std::min(pixels.rows, pixels.cols) < kSmallestSide || pixels.depth() != CV_8U)

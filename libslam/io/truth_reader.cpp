@@ -15,7 +15,8 @@
 namespace libslam {
 namespace {
 
-constexpr std::size_t kTumColumns = 8, kMrptPathColumns = 6, kMrptLandmarkColumns = 7;
+constexpr std::size_t kTumColumns = 8, kMrptPathColumns = 6, kMrptLandmarkColumns = 7,
+                      kRelationColumns = 8;
 
 double yaw_of_quaternion(double x, double y, double z, double w) {
   return std::atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z));
@@ -70,6 +71,15 @@ TrueLandmark read_landmark_row(const TextReader& row) {
   return landmark;
 }
 
+/// Half of the resolution that log files print times with [s].
+constexpr double kPrintedTime = 5e-7;
+
+/// `time` of the source as the rawlog has it.
+void follow_mended_clock(const std::map<double, double>& mended_times, double& time) {
+  const auto mended = mended_times.lower_bound(time - kPrintedTime);
+  if (mended != mended_times.end() && mended->first < time + kPrintedTime) time = mended->second;
+}
+
 }  // namespace
 
 Trajectory read_true_path(const std::string& file) {
@@ -110,6 +120,23 @@ std::vector<TrueLandmark> read_true_landmarks(const std::string& file) {
   return landmarks;
 }
 
+std::vector<PoseRelation> read_relations(const std::string& file) {
+  TextReader row(file);
+  std::vector<PoseRelation> relations;
+  while (row.next()) {
+    if (row.columns() != kRelationColumns)
+      row.reject("a relation has 8 columns (t1 t2 x y z roll pitch yaw), not " +
+                 std::to_string(row.columns()));
+    for (const std::size_t out_of_plane : {4U, 5U, 6U})
+      if (std::abs(row.number(out_of_plane)) > kLevel)
+        row.reject("the relation leaves the plane: z, roll and pitch must be 0");
+    relations.push_back(
+        {row.number(0), row.number(1), {row.number(2), row.number(3), row.number(7)}});
+  }
+  if (relations.empty()) throw InputError(file + ": holds no relations");
+  return relations;
+}
+
 TruthNotes read_truth_notes(const std::string& file) {
   require_input_file(file);
   TruthNotes notes;
@@ -123,6 +150,8 @@ TruthNotes read_truth_notes(const std::string& file) {
     const auto calibration = json.value("calibration", nlohmann::json::object());
     for (const auto& [name, value] : calibration.items())
       notes.calibration[name] = value.get<double>();
+    for (const auto& pair : json.value("mended_times", nlohmann::json::array()))
+      notes.mended_times[pair.at(0).get<double>()] = pair.at(1).get<double>();
   } catch (const nlohmann::json::exception& error) {
     throw InputError(file + ": " + error.what());
   }
@@ -140,15 +169,21 @@ TruthFiles find_truth(const std::string& rawlog) {
     return {};
   };
   return {beside({".truth.tum", "_ground_truth_robot_path.txt"}),
-          beside({".landmarks.csv", "_ground_truth.txt"}), beside({".truth.json"})};
+          beside({".landmarks.csv", "_ground_truth.txt"}), beside({".truth.json"}), true,
+          beside({".relations"})};
 }
 
 GroundTruth read_truth(const TruthFiles& files) {
   GroundTruth truth;
   if (!files.path.empty()) truth.path = read_true_path(files.path);
   if (!files.landmarks.empty()) truth.landmarks = read_true_landmarks(files.landmarks);
+  if (!files.relations.empty()) truth.relations = read_relations(files.relations);
   if (!files.notes.empty()) {
     TruthNotes notes = read_truth_notes(files.notes);
+    for (PoseRelation& relation : truth.relations) {
+      follow_mended_clock(notes.mended_times, relation.from_time);
+      follow_mended_clock(notes.mended_times, relation.to_time);
+    }
     truth.calibration = std::move(notes.calibration);
     if (!files.notes_describe_path) return truth;
     truth.path.has_heading = notes.has_heading;

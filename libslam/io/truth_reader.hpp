@@ -25,11 +25,18 @@ Trajectory read_true_path(const std::string& file);
 /// Throws InputError where a row cannot be read or an id comes twice.
 std::vector<TrueLandmark> read_true_landmarks(const std::string& file);
 
+/// Relations of the Freiburg SLAM benchmark, `t1 t2 x y z roll pitch yaw`: the pose at t2 seen from
+/// the pose at t1, [s], [m] and [rad]; of a robot in the plane, so that z, roll and pitch are 0.
+/// Throws InputError where a row cannot be read or leaves the plane.
+std::vector<PoseRelation> read_relations(const std::string& file);
+
 /// What X.truth.json says besides its description of the scenario.
 struct TruthNotes {
   bool has_heading = true;  ///< the path holds headings, not positions only
   Eigen::Vector2d point_on_robot = Eigen::Vector2d::Zero();  ///< whose positions they are [m]
   std::map<std::string, double> calibration;                 ///< parameter name -> true value
+  /// Time of the source -> time in the rawlog, where the import had to mend the clock [s].
+  std::map<double, double> mended_times;
 };
 
 /// Throws InputError where the file is no JSON object or a value has a wrong type.
@@ -40,13 +47,15 @@ struct TruthFiles {
   std::string path, landmarks, notes;
   bool notes_describe_path =
       true;  ///< false: `path` is another file than the notes were written for
+  std::string relations{};
 };
 
 /// The files that stand beside `rawlog` (X.rawlog): X.truth.tum, X.landmarks.csv, X.truth.json,
-/// else MRPT's X_ground_truth_robot_path.txt and X_ground_truth.txt.
+/// X.relations, else MRPT's X_ground_truth_robot_path.txt and X_ground_truth.txt.
 TruthFiles find_truth(const std::string& rawlog);
 
-/// Reads what `files` names. Throws InputError.
+/// Reads what `files` names. The times of relations, which are those of the source, follow the
+/// clock that the notes say was mended. Throws InputError.
 GroundTruth read_truth(const TruthFiles& files);
 
 }  // namespace libslam

@@ -31,9 +31,23 @@ std::string landmarks_text(const std::vector<TrueLandmark>& landmarks) {
   return text;
 }
 
+std::string relations_text(const std::vector<PoseRelation>& relations) {
+  std::string text;
+  for (const PoseRelation& relation : relations) {
+    const Eigen::Vector3d& pose = relation.T_from_to;
+    append_number(text, relation.from_time);
+    for (const double value : {relation.to_time, pose.x(), pose.y(), 0.0, 0.0, 0.0, pose.z()}) {
+      text += ' ';
+      append_number(text, value);
+    }
+    text += '\n';
+  }
+  return text;
+}
+
 void remove_truth_beside(const std::string& rawlog) {
   std::error_code ignored;
-  for (const char* const ending : {".truth.tum", ".landmarks.csv"})
+  for (const char* const ending : {".truth.tum", ".landmarks.csv", ".relations"})
     std::filesystem::remove(stem_of(rawlog) + ending, ignored);
 }
 
@@ -43,6 +57,8 @@ void write_truth_beside(const std::string& rawlog, const GroundTruth& truth,
   if (!path.empty()) replace_file(stem_of(rawlog) + ".truth.tum", path);
   if (!truth.landmarks.empty())
     replace_file(stem_of(rawlog) + ".landmarks.csv", landmarks_text(truth.landmarks));
+  if (!truth.relations.empty())
+    replace_file(stem_of(rawlog) + ".relations", relations_text(truth.relations));
   replace_file(stem_of(rawlog) + ".truth.json", notes);
 }
 

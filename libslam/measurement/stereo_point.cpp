@@ -48,28 +48,8 @@ Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, 6> point_by_pose(const GaussianSt
   return J;
 }
 
-struct Projection {
-  Eigen::Vector3d z;
-  Eigen::Matrix3d by_point;  ///< d z / d p_c
-  bool visible;
-};
-
-Projection project(const StereoCamera& camera, const Eigen::Vector3d& p) {
-  const double depth = p.z(), x = p.x() / depth, y = p.y() / depth;
-  Projection out;
-  out.visible = depth >= kSmallestDepth;
-  out.z << camera.cx + camera.fx * x, camera.cy + camera.fy * y,
-      camera.fx * camera.baseline / depth;
-  out.by_point << camera.fx, 0.0, -camera.fx * x, 0.0, camera.fy, -camera.fy * y, 0.0, 0.0,
-      -camera.fx * camera.baseline / depth;
-  out.by_point /= depth;
-  return out;
-}
-
-/// Where (u, v, d) comes from, in the camera frame.
-Eigen::Vector3d triangulate(const StereoCamera& camera, const MeasurementVector& z) {
-  const double depth = camera.fx * camera.baseline / z[2];
-  return {(z[0] - camera.cx) / camera.fx * depth, (z[1] - camera.cy) / camera.fy * depth, depth};
+bool visible(const Eigen::Vector3d& p_camera) {
+  return p_camera.z() >= kSmallestDepth;
 }
 
 /// A landmark in space; a planar one is put at the height of the camera, where it does no harm.
@@ -109,12 +89,13 @@ MeasurementVector StereoPoint::predict(const GaussianState& state, BlockId pose,
   check(state, pose, feature);
   const StereoCamera& camera = camera_of(feature);
   const Eigen::Isometry3d T_world_camera = robot_pose(state, pose) * camera.T_robot_camera;
-  const Projection seen =
-      project(camera, T_world_camera.inverse() * place_of(state, landmark, T_world_camera));
-  if (!seen.visible)
+  const Eigen::Vector3d p_camera =
+      T_world_camera.inverse() * place_of(state, landmark, T_world_camera);
+  if (!visible(p_camera))
     return MeasurementVector::Constant(dimension_, std::numeric_limits<double>::quiet_NaN());
-  if (dimension_ == 2) return seen.z(kPlanarRows);
-  return seen.z;
+  const Eigen::Vector3d z = project(camera, p_camera);
+  if (dimension_ == 2) return z(kPlanarRows);
+  return z;
 }
 
 void StereoPoint::linearize(const GaussianState& state, BlockId pose, BlockId landmark,
@@ -124,10 +105,11 @@ void StereoPoint::linearize(const GaussianState& state, BlockId pose, BlockId la
   const Eigen::Isometry3d T_world_robot = robot_pose(state, pose);
   const Eigen::Isometry3d T_world_camera = T_world_robot * camera.T_robot_camera;
   const Eigen::Vector3d m = place_of(state, landmark, T_world_camera);
-  const Projection seen = project(camera, T_world_camera.inverse() * m);
-  Eigen::Vector3d innovation = feature.z - seen.z;
-  if (!seen.visible) innovation.setConstant(std::numeric_limits<double>::quiet_NaN());
-  const Eigen::Matrix3d H = seen.by_point * T_world_camera.linear().transpose();
+  const Eigen::Vector3d p_camera = T_world_camera.inverse() * m;
+  Eigen::Vector3d innovation = feature.z - project(camera, p_camera);
+  if (!visible(p_camera)) innovation.setConstant(std::numeric_limits<double>::quiet_NaN());
+  const Eigen::Matrix3d H =
+      projection_jacobian(camera, p_camera) * T_world_camera.linear().transpose();
   const auto H_pose = (-H * point_by_pose(state, pose, m - T_world_robot.translation())).eval();
   out.wrt.clear();
   BlockMatrix& by_pose = out.wrt.add(pose, dimension_, H_pose.cols());
@@ -156,12 +138,8 @@ void StereoPoint::initialize(const GaussianState& state, BlockId pose, const Fea
   const Eigen::Isometry3d T_world_robot = robot_pose(state, pose);
   const Eigen::Matrix3d R_world_camera = T_world_robot.linear() * camera.T_robot_camera.linear();
   const Eigen::Vector3d p_camera = triangulate(camera, feature.z);
-  const double depth = p_camera.z(), d = feature.z[2];
-  Eigen::Matrix3d by_z;
-  by_z << depth / camera.fx, 0.0, -p_camera.x() / d, 0.0, depth / camera.fy, -p_camera.y() / d, 0.0,
-      0.0, -depth / d;
   const Eigen::Vector3d from_robot = T_world_robot.linear() * (camera.T_robot_camera * p_camera);
-  const Eigen::Matrix3d G = R_world_camera * by_z;
+  const Eigen::Matrix3d G = R_world_camera * triangulation_jacobian(camera, p_camera, feature.z[2]);
   const Eigen::Matrix3d noise = G * feature.cov * G.transpose();
   out.estimate = (T_world_robot.translation() + from_robot).head(dimension_);
   out.wrt.clear();

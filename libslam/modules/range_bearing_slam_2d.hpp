@@ -86,7 +86,7 @@ class RangeBearingSlam2D : public mrpt::system::COutputLogger {
   /// off.
   std::vector<AdaptedNoise> getCurrentNoise() const;
   /// What `options.parameters.policies.disturbance` noticed in the last pair: "disturbance",
-  /// "lost", "relocalized" or nothing.
+  /// "lost", "relocalized" or nothing; several are joined by "+".
   std::string getLastEvent() const;
 
   /// Everything that the next pair depends on: what runs on after loadState(), with the same

@@ -104,7 +104,8 @@ class SlamMapBuilder final : public mrpt::slam::CMetricMapBuilder {
   std::vector<CalibrationValue> getCurrentCalibration() const;
   /// The noise that [adaptation] believes in; empty where it is off.
   std::vector<AdaptedNoise> getCurrentNoise() const;
-  /// What [disturbance] noticed in the last pair: "disturbance", "lost", "relocalized" or nothing.
+  /// What [disturbance] noticed in the last pair: "disturbance", "lost", "relocalized" or nothing;
+  /// several are joined by "+".
   std::string getLastEvent() const;
 
  private:

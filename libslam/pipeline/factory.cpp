@@ -12,6 +12,7 @@
 #include <libslam/frontend/fiducials.hpp>
 #include <libslam/frontend/range_bearing_observation.hpp>
 #include <libslam/frontend/scan_lines.hpp>
+#include <libslam/frontend/scan_trunks.hpp>
 #include <libslam/frontend/sensor_path_observation.hpp>
 #include <libslam/frontend/stereo_features.hpp>
 #include <libslam/frontend/stereo_observation.hpp>
@@ -29,6 +30,7 @@
 #include <libslam/pipeline/policy_factory.hpp>
 #include <libslam/policy/sage_husa.hpp>
 #include <libslam/state/chi_square.hpp>
+#include <libslam/state/planar_pose.hpp>
 
 namespace libslam {
 
@@ -185,7 +187,7 @@ EkfSlamParts make_filter_parts(const Parameters& p, const TrueState* truth) {
     parts.implied_input.emplace(p.policies.implied_input.probability);
   if (p.filter.delayed_pose_distance > 0.0)
     parts.delayed.emplace(DelayedPoseSpacing{p.filter.delayed_pose_distance,
-                                             p.filter.delayed_pose_turn_deg * kPi / 180.0});
+                                             to_radians(p.filter.delayed_pose_turn_deg)});
   const BlockSpec pose = parts.motion->pose_spec();
   parts.map = make_map_start(p.map);
   if (parts.map && !parts.map->at_saved_pose) parts.start = start_pose(pose, p.map);
@@ -212,6 +214,8 @@ std::unique_ptr<Frontend> make_frontend(const Parameters& p) {
     return std::make_unique<ScanLines>(p.frontend, p.input.sensor_label);
   if (p.frontend.source == "fiducials")
     return std::make_unique<Fiducials>(p.frontend, p.input.sensor_label);
+  if (p.frontend.source == "scan_trunks")
+    return std::make_unique<ScanTrunks>(p.frontend, p.measurement, p.input.sensor_label);
   throw_unknown("front-end", p.frontend.source);
 }
 

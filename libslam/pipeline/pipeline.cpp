@@ -23,6 +23,12 @@ EkfSlamParts make_parts(const Parameters& parameters, const TrueState* truth, Fi
   return parts;
 }
 
+int count_features(std::span<const FeatureBatch> batches) {
+  std::size_t count = 0;
+  for (const FeatureBatch& batch : batches) count += batch.size();
+  return static_cast<int>(count);
+}
+
 void fill_pose(const GaussianState& state, BlockId pose, StepRecord& record) {
   const auto x = state.estimate(pose);
   if (state.spec(pose).chart == Chart::kSE2) {
@@ -44,7 +50,7 @@ Pipeline::Pipeline(const Parameters& parameters, const TrueState* truth, FilterS
       ignore_odometry_(parameters.input.odometry == "none"),
       keeps_velocity_(parameters.motion.model == "constant_twist"),
       frontend_(make_frontend(parameters)),
-      schedule_(parameters.policies.update_period_s, parameters.policies.update_every_n),
+      schedule_(parameters.policies),
       filter_(make_parts(parameters, truth, std::move(start))) {}
 
 StepRecord Pipeline::process(const LogStep& step) {
@@ -76,14 +82,24 @@ void Pipeline::propagate(const MotionAction* action) {
   if (observer_ != nullptr) observer_->on_motion(action);
 }
 
+Eigen::Vector3d Pipeline::planar_pose() const {
+  const auto x = filter_.state().estimate(filter_.pose());
+  if (x.size() == 3) return x;
+  return shadow_of({x.head<3>(), Eigen::Quaterniond(x[6], x[3], x[4], x[5])});
+}
+
+void Pipeline::extract(const LogStep& step) {
+  const PhaseTimer timer(filter_.times(), Phase::kExtract);
+  batches_.clear();
+  if (frontend_->needs_every_frame() || !schedule_.skip(step.time, planar_pose()))
+    frontend_->extract(*step.frame, batches_);
+}
+
 StepRecord Pipeline::update(const LogStep& step) {
   last_update_ = {};
   if (step.frame) {
-    {
-      const PhaseTimer timer(filter_.times(), Phase::kExtract);
-      frontend_->extract(*step.frame, batches_);
-    }
-    if (!batches_.empty() && schedule_.due(step.time))
+    extract(step);
+    if (!batches_.empty() && schedule_.due(step.time, planar_pose(), count_features(batches_)))
       for (const FeatureBatch& batch : batches_) {
         const UpdateOutcome outcome = filter_.update(batch);
         if (observer_ != nullptr) observer_->on_update(batch, outcome);

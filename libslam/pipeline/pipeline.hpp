@@ -59,6 +59,7 @@ class Pipeline {
 
   const EkfSlam& filter() const { return filter_; }
   const Frontend& frontend() const { return *frontend_; }
+  const UpdateSchedule& schedule() const { return schedule_; }
   const OdometryReader& odometry() const { return odometry_; }
   /// What the last frame did to the filter; empty if it was not due.
   const UpdateOutcome& last_update() const { return last_update_; }
@@ -69,7 +70,10 @@ class Pipeline {
   void propagate(const MotionAction* action);
   /// The motion of a body that keeps its velocity until `time`.
   MotionAction keep_velocity(double time);
+  /// Fills the batches, unless the frame cannot be due.
+  void extract(const LogStep& step);
   StepRecord update(const LogStep& step);
+  Eigen::Vector3d planar_pose() const;
 
   OdometryReader odometry_;
   bool ignore_odometry_, keeps_velocity_;

@@ -17,16 +17,17 @@ std::vector<NoiseComponent> noise_components(const Parameters& p) {
   if (p.measurement.model == "range_bearing")
     return {
         {"range", p.measurement.sigma_range, n.min_sigma_range, n.max_sigma_range,
-         n.range_growth_per_m},
+         n.range_growth_per_m, "m"},
         {"bearing", p.measurement.sigma_bearing_deg * kDegree, n.min_sigma_bearing_deg * kDegree,
-         n.max_sigma_bearing_deg * kDegree, n.bearing_growth_per_m}};
+         n.max_sigma_bearing_deg * kDegree, n.bearing_growth_per_m, "rad"}};
   if (p.measurement.model == "stereo_point") {
     const StereoNoiseParameters& s = p.measurement.stereo;
     const double u_left = s.variance(s.sigma_u_left), u_right = s.variance(s.sigma_u_right);
     const double v_left = s.variance(s.sigma_v_left), v_right = s.variance(s.sigma_v_right);
     const auto component = [&](const char* name, double variance) {
-      return NoiseComponent{name, std::sqrt(variance), n.min_sigma_pixel, n.max_sigma_pixel,
-                            n.pixel_growth_per_m};
+      return NoiseComponent{
+          name, std::sqrt(variance), n.min_sigma_pixel, n.max_sigma_pixel, n.pixel_growth_per_m,
+          "px"};
     };
     return {component("u", u_left), component("v", v_left * v_right / (v_left + v_right)),
             component("d", u_left + u_right)};

@@ -8,16 +8,16 @@
 #include <libslam/config/digest.hpp>
 #include <libslam/config/version.hpp>
 #include <libslam/config/yaml_loader.hpp>
-#include <libslam/io/exporters/scene_3d.hpp>
-#include <libslam/io/exporters/simple_map.hpp>
 #include <libslam/io/input_error.hpp>
 #include <libslam/io/map_file.hpp>
 #include <libslam/io/rawlog_player.hpp>
 #include <libslam/pipeline/frame_picture.hpp>
 #include <libslam/pipeline/landmark_identity.hpp>
+#include <libslam/pipeline/mrpt_files.hpp>
 #include <libslam/pipeline/pipeline.hpp>
 #include <libslam/pipeline/process_usage.hpp>
 #include <libslam/pipeline/run.hpp>
+#include <libslam/policy/noise_warnings.hpp>
 #include <libslam/result/atomic_file.hpp>
 #include <libslam/result/recorder.hpp>
 #include <libslam/result/trajectory.hpp>
@@ -93,11 +93,15 @@ class Run {
   RunSummary finish() {
     save_map();
     const LandmarkMap map = finite_landmarks();
+    if (auto smoothed = pipeline_.filter().smoothed_path()) {
+      mrpt_files_.correct(*smoothed);
+      recorder_.add_smoothed_path(std::move(*smoothed));
+    }
+    if (request_.parameters.output.mrpt_files)
+      if (auto picture = mrpt_files_.render_grid()) recorder_.add_picture(std::move(*picture));
     RunSummary summary =
         recorder_.finish(summarize(), map, request_.truth, landmark_identity(request_.parameters));
-    if (request_.parameters.output.mrpt_files) write_mrpt_files(map);
-    if (const auto smoothed = pipeline_.filter().smoothed_path())
-      replace_file(request_.directory / "trajectory_smoothed.tum", tum_text(*smoothed));
+    if (request_.parameters.output.mrpt_files) mrpt_files_.write(request_.directory, map);
     if (failure_) std::rethrow_exception(failure_);
     return summary;
   }
@@ -120,12 +124,6 @@ class Run {
     for (auto& landmark : pipeline_.filter().landmarks())
       if (landmark.mean.allFinite() && landmark.cov.allFinite()) map.add(std::move(landmark));
     return map;
-  }
-
-  void write_mrpt_files(const LandmarkMap& map) const {
-    write_scene_3d(request_.directory / "scene.3Dscene",
-                   trajectory_of(read_path(request_.directory / "trajectory.csv")), map);
-    simple_map_.write(request_.directory / "map.simplemap");
   }
 
   bool stopped() const { return request_.stop != nullptr && request_.stop->load(); }
@@ -160,7 +158,7 @@ class Run {
     any_used_ = any_used_ || record.accepted > 0 || record.new_landmarks > 0;
     unused_sightings_ += record.ambiguous + record.gated;
     recorder_.record(record);
-    if (request_.parameters.output.mrpt_files) keep_frame(record, step.frame);
+    if (request_.parameters.output.mrpt_files) mrpt_files_.keep(record, step.frame);
     if (!has_picture_ && record.accepted > 0) draw(*step.frame);
     if (request_.on_step) request_.on_step(player_.progress(), record);
   }
@@ -170,13 +168,6 @@ class Run {
     has_picture_ = true;
     if (auto picture = draw_frame(frame, pipeline_.last_features()))
       recorder_.add_picture(std::move(*picture));
-  }
-
-  void keep_frame(const StepRecord& record, const mrpt::obs::CSensoryFrame::Ptr& frame) {
-    if (record.spatial)
-      simple_map_.add(*record.spatial, frame);
-    else
-      simple_map_.add(record.pose, record.cov, frame);
   }
 
   RunSummary summarize() {
@@ -220,6 +211,8 @@ class Run {
                          " measurements left out as unusable");
     warn_of_idle_schedule(warnings);
     warn_of_unused_sightings(warnings);
+    const auto about_noise = warnings_about(pipeline_.filter().noise());
+    warnings.insert(warnings.end(), about_noise.begin(), about_noise.end());
     fill_timing(summary);
     summary.health.features = pipeline_.frontend().figures();
     const Eigen::MatrixXd cov = pipeline_.filter().covariance();
@@ -261,9 +254,24 @@ class Run {
     const PhaseTimes& times = pipeline_.filter().times();
     for (std::size_t i = 0; i < PhaseTimes::kNames.size(); ++i)
       summary.timing.phases[std::string(PhaseTimes::kNames[i])] = times.seconds[i];
+    fill_savings(summary.timing);
     summary.timing.peak_rss_mb = peak_memory_mb();
     if (summary.timing.wall_s > 0.0 && summary.input.duration_s > 0.0)
       summary.timing.realtime_factor = summary.input.duration_s / summary.timing.wall_s;
+  }
+
+  /// What the schedule saved, at the mean time of all that an update does.
+  void fill_savings(RunSummary::Timing& timing) const {
+    const auto savings = pipeline_.schedule().savings();
+    if (!savings) return;
+    timing.updates = savings->updates;
+    timing.updates_without_stretch = savings->without_stretch;
+    double spent = 0.0;
+    for (const auto& [phase, seconds] : timing.phases)
+      if (phase != PhaseTimes::kNames[static_cast<std::size_t>(Phase::kPredict)]) spent += seconds;
+    if (savings->updates > 0)
+      timing.saved_s = spent / static_cast<double>(savings->updates) *
+                       static_cast<double>(savings->without_stretch - savings->updates);
   }
 
   const RunRequest& request_;
@@ -272,7 +280,7 @@ class Run {
   RawlogPlayer player_;
   Pipeline pipeline_;
   Recorder recorder_;
-  SimpleMapWriter simple_map_;
+  MrptFiles mrpt_files_;
   std::exception_ptr failure_;
   std::vector<std::string> warnings_;
   std::int64_t unusable_steps_ = 0, unused_sightings_ = 0;

@@ -7,7 +7,7 @@
 #include <libslam/io/truth_reader.hpp>
 #include <libslam/pipeline/factory.hpp>
 #include <libslam/pipeline/simulation.hpp>
-#include <libslam/simulation/planar_pose.hpp>
+#include <libslam/state/planar_pose.hpp>
 
 namespace libslam {
 
@@ -65,6 +65,35 @@ World read_world(const WorldParameters& files, const DriveParameters& drive) {
   return world;
 }
 
+/// Depth at which a disparity is ten times its standard deviation: what starts there is Gaussian.
+double known_depth(double focal_length, double baseline, double sigma_pixel) {
+  return focal_length * baseline / (10.0 * std::sqrt(2.0) * sigma_pixel);
+}
+
+/// The sensor whose sightings the filter uses: range and bearing, else points of a stereo camera,
+/// else tags in its images.
+void choose_sensor(const Scenario& scenario, Parameters& p) {
+  const StereoSensorParameters& points = scenario.stereo;
+  const StereoImagesParameters& images = scenario.stereo_images;
+  if (scenario.range_bearing.enabled || (!points.enabled && !images.enabled)) {
+    p.measurement.noise = "configured";
+    p.measurement.sigma_range = scenario.range_bearing.sigma_range;
+    p.measurement.sigma_bearing_deg = scenario.range_bearing.sigma_bearing_deg;
+    return;
+  }
+  p.measurement.model = "stereo_point";
+  if (points.enabled) {
+    p.frontend.source = "stereo_points";
+    p.measurement.stereo.sigma_pixel = points.sigma_pixel;
+    p.frontend.max_range = known_depth(points.focal_length_px, points.baseline, points.sigma_pixel);
+  } else {
+    p.frontend.source = "fiducials";
+    p.frontend.fiducials.points = "all";
+    p.frontend.max_range =
+        known_depth(images.focal_length_px, images.baseline, p.frontend.fiducials.sigma_pixel);
+  }
+}
+
 InputParameters driven_by(const std::string& odometry) {
   InputParameters input;
   input.odometry = odometry;
@@ -102,11 +131,11 @@ Parameters nominal_filter(const Scenario& scenario) {
   p.input.odometry = scenario.log.odometry;
   p.motion = scenario.motion;
   p.motion.noise.from_log = false;
-  p.measurement.noise = "configured";
-  p.measurement.sigma_range = scenario.range_bearing.sigma_range;
-  p.measurement.sigma_bearing_deg = scenario.range_bearing.sigma_bearing_deg;
+  choose_sensor(scenario, p);
   p.association.gate_probability = 1.0;
-  if (!scenario.log.identities) {
+  const bool tags = p.frontend.source == "fiducials";  // they have numbers of their own
+  if (tags) p.association.gate_probability = 0.999;    // and their corners errors of their own
+  if (!scenario.log.identities && !tags) {
     p.association.method = "nearest_neighbour";
     p.association.gate_probability = 0.99;
   }

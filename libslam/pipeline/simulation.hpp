@@ -20,7 +20,8 @@ Scenario load_scenario(const std::filesystem::path& file, ParameterPlaces* place
 void resolve_world_files(Scenario& scenario, const std::filesystem::path& directory);
 
 /// What the robot of a scenario knows about itself: its nominal vehicle with the noise of the
-/// odometry, the odometry field, and the nominal noise of its range-bearing sensor.
+/// odometry, the odometry field, and the sensor to use with its nominal noise: range and bearing
+/// where that is enabled or nothing else is, else points of a stereo camera, else tags in images.
 Parameters nominal_filter(const Scenario& scenario);
 
 /// All conflicts between parameters, ranges included.

@@ -19,6 +19,11 @@ using Eigen::Index;
 /// its sign: so much of every error is taken to be its own.
 constexpr double kIndependence = 1e-3;
 
+/// Relative change of a variance that is worth weighing an observation again: in steady state none
+/// is, at the start and after a step it takes a few rounds.
+constexpr double kWorthAnotherRound = 0.1;
+constexpr int kMostRounds = 5;
+
 double distance_of(const Feature& feature) {
   if (!feature.camera) return feature.z[0];
   // A disparity that noise made tiny or negative: as far as the camera can tell, one pixel.
@@ -33,6 +38,15 @@ void divide(const MeasurementMatrix& lower, Matrix&& m) {
       for (Index k = 0; k < r; ++k) m(r, c) -= lower(r, k) * m(k, c);
       m(r, c) /= lower(r, r);
     }
+}
+
+/// sum += x x^T / kappa - expected; plain loops for the same reason.
+void add_square(const MeasurementVector& x, double kappa, const MeasurementMatrix& expected,
+                MeasurementMatrix& sum) {
+  for (Index c = 0; c < x.size(); ++c) {
+    const double scaled = x[c] / kappa;
+    for (Index r = 0; r < x.size(); ++r) sum(r, c) += x[r] * scaled - expected(r, c);
+  }
 }
 
 [[noreturn]] void refuse(const std::string& what) {
@@ -77,9 +91,9 @@ SageHusa::SageHusa(const NoiseAdaptationParameters& parameters,
   kappa_identified_ = gated_covariance(gate.identified, static_cast<int>(dimension));
   kappa_anonymous_ = gated_covariance(gate.anonymous, static_cast<int>(dimension));
   Channel start;
-  start.factor = start.sum = MeasurementMatrix::Identity(dimension, dimension);
-  start.bias = start.sum_innovation = MeasurementVector::Zero(dimension);
-  start.past = std::pow(parameters.forgetting, parameters.prior_weight);
+  start.belief.factor = start.sum = MeasurementMatrix::Identity(dimension, dimension);
+  start.belief.bias = start.sum_innovation = MeasurementVector::Zero(dimension);
+  start.belief.weight = parameters.prior_weight;
   start.reference = MeasurementMatrix::Zero(dimension, dimension);
   for (Index j = 0; j < dimension; ++j)
     start.reference(j, j) = components_[static_cast<std::size_t>(j)].configured;
@@ -126,70 +140,107 @@ void SageHusa::bound(MeasurementMatrix& cov) const {
   cov += kIndependence * (diagonal - cov);
 }
 
+void SageHusa::believe(Group& group) const {
+  const MeasurementMatrix half = group.shape * channels_[group.channel].belief.factor;
+  group.cov.noalias() = half * group.shape.transpose();
+  bound(group.cov);
+}
+
 void SageHusa::apply(std::span<Feature> features) {
-  shapes_.clear();
-  const Feature* last = nullptr;
+  for (Channel& channel : channels_) channel.before = channel.belief;
+  rounds_ = 0;
+  groups_.clear();
+  group_of_.clear();
   for (Feature& feature : features) {
-    Channel& channel = channels_[slot(feature.channel)];
+    const std::size_t which = slot(feature.channel);
     // Most sensors give all their features the same covariance.
-    if (last != nullptr && !grows_ && feature.channel == last->channel &&
-        feature.cov.rows() == last_cov_.rows() && feature.cov == last_cov_) {
-      shapes_.push_back(shapes_.back());
-      feature.cov = last->cov;
-    } else {
-      last_cov_ = feature.cov;
-      const MeasurementMatrix& shape = shapes_.emplace_back(shape_of(feature, channel));
-      const MeasurementMatrix half = shape * channel.factor;
-      feature.cov.noalias() = half * shape.transpose();
-      bound(feature.cov);
+    if (groups_.empty() || grows_ || groups_.back().channel != which ||
+        groups_.back().configured.rows() != feature.cov.rows() ||
+        groups_.back().configured != feature.cov) {
+      Group& group = groups_.emplace_back();
+      group.channel = which;
+      group.configured = feature.cov;
+      group.shape = shape_of(feature, channels_[which]);
+      believe(group);
     }
-    last = &feature;
-    if (parameters_.bias) feature.z -= channel.bias;
+    group_of_.push_back(groups_.size() - 1);
+    feature.cov = groups_.back().cov;
+    if (parameters_.bias) feature.z -= channels_[which].belief.bias;
   }
 }
 
-MeasurementMatrix SageHusa::sample(const Postfit& postfit, const MeasurementMatrix& shape,
-                                   const MeasurementMatrix& cov, double kappa) const {
-  MeasurementVector error = classic_ ? postfit.innovation : postfit.residual;
-  MeasurementMatrix added = postfit.cov_predicted;
-  if (classic_) added = cov - postfit.cov_innovation;
-  divide(shape, error);
-  divide(shape, added);
-  divide(shape, added.transpose());
-  added += error * error.transpose() / kappa;
-  return added;
-}
-
-void SageHusa::observe(std::span<const Feature> features, std::span<const Postfit> corrected) {
-  require(features.size() == shapes_.size(), "other features than those that apply has seen");
+void SageHusa::begin_round() {
+  const auto dimension = static_cast<Index>(components_.size());
   for (Channel& channel : channels_) {
+    channel.weighed_with = channel.belief.factor.diagonal();
+    channel.belief = channel.before;
     channel.sum.setZero();
     channel.sum_innovation.setZero();
     channel.count = 0;
   }
-  for (const Postfit& postfit : corrected) {
+  for (Group& group : groups_) {
+    group.sum.setZero(dimension, dimension);
+    group.count = 0;
+  }
+}
+
+bool SageHusa::observe(std::span<Feature> features, std::span<const Postfit> accepted) {
+  require(features.size() == group_of_.size(), "other features than those that apply has seen");
+  begin_round();
+  for (const Postfit& postfit : accepted) {
     require(postfit.innovation.size() == static_cast<Index>(components_.size()),
             "a measurement that leaves out rows of its feature");
-    const Feature& feature = features[postfit.feature];
-    Channel& channel = channels_[slot(feature.channel)];
-    const double kappa = feature.id == kNoIdentity ? kappa_anonymous_ : kappa_identified_;
-    channel.sum += sample(postfit, shapes_[postfit.feature], feature.cov, kappa);
-    channel.sum_innovation += postfit.innovation;
-    ++channel.count;
+    Group& group = groups_[group_of_[postfit.feature]];
+    const double kappa =
+        features[postfit.feature].id == kNoIdentity ? kappa_anonymous_ : kappa_identified_;
+    add_square(classic_ ? postfit.innovation : postfit.weighted, kappa,
+               classic_ ? postfit.cov_innovation : postfit.information, group.sum);
+    ++group.count;
+    if (parameters_.bias) channels_[group.channel].sum_innovation += postfit.innovation;
   }
+  for (const Group& group : groups_)
+    if (group.count > 0) add(group);
   for (Channel& channel : channels_)
     if (channel.count > 0) blend(channel);
+  return !classic_ && reconsider(features);
+}
+
+void SageHusa::add(const Group& group) {
+  Channel& channel = channels_[group.channel];
+  MeasurementMatrix added = group.sum;
+  if (!classic_) added = group.cov * group.sum * group.cov;
+  added += group.count * group.cov;
+  divide(group.shape, added);
+  divide(group.shape, added.transpose());
+  channel.sum += added;
+  channel.count += group.count;
+}
+
+/// The noise that these features show is theirs, too; where it is another than the one that they
+/// were weighed with, the answer changes with the weights.
+bool SageHusa::reconsider(std::span<Feature> features) {
+  double change = 0.0;
+  for (const Channel& channel : channels_) {
+    if (channel.count == 0) continue;
+    const auto now = channel.belief.factor.diagonal();
+    change = std::max(
+        change,
+        (now - channel.weighed_with).cwiseQuotient(channel.weighed_with).cwiseAbs().maxCoeff());
+  }
+  if (!(change > kWorthAnotherRound) || ++rounds_ > kMostRounds) return false;
+  for (Group& group : groups_) believe(group);
+  for (std::size_t i = 0; i < features.size(); ++i) features[i].cov = groups_[group_of_[i]].cov;
+  return true;
 }
 
 void SageHusa::blend(Channel& channel) const {
-  const double d = (1.0 - parameters_.forgetting) / (1.0 - channel.past);
-  channel.past *= parameters_.forgetting;
-  const double share = d / channel.count;
-  channel.factor =
-      (1.0 - d) * channel.factor + 0.5 * share * (channel.sum + channel.sum.transpose()).eval();
+  channel.belief.weight = parameters_.forgetting * channel.belief.weight + channel.count;
+  const double share = 1.0 / channel.belief.weight, d = share * channel.count;
+  channel.belief.factor = (1.0 - d) * channel.belief.factor +
+                          0.5 * share * (channel.sum + channel.sum.transpose()).eval();
   if (classic_ && parameters_.eigenvalue_floor > 0.0)
-    channel.factor = raised(channel.factor, parameters_.eigenvalue_floor);
-  if (parameters_.bias) channel.bias += share * channel.sum_innovation;
+    channel.belief.factor = raised(channel.belief.factor, parameters_.eigenvalue_floor);
+  if (parameters_.bias) channel.belief.bias += share * channel.sum_innovation;
 }
 
 std::vector<AdaptedNoise> SageHusa::noise() const {
@@ -197,7 +248,8 @@ std::vector<AdaptedNoise> SageHusa::noise() const {
   all.reserve(channels_.size() * components_.size());
   for (std::size_t c = 0; c < channels_.size(); ++c) {
     const Channel& channel = channels_[c];
-    MeasurementMatrix cov = channel.reference * channel.factor * channel.reference.transpose();
+    MeasurementMatrix cov =
+        channel.reference * channel.belief.factor * channel.reference.transpose();
     bound(cov);
     for (std::size_t j = 0; j < components_.size(); ++j) {
       const auto row = static_cast<Index>(j);
@@ -206,6 +258,7 @@ std::vector<AdaptedNoise> SageHusa::noise() const {
       if (channels_.size() > 1) noise.name.append("_").append(std::to_string(c + 1));
       noise.sigma = std::sqrt(std::max(cov(row, row), 0.0));
       noise.configured = channel.reference.row(row).norm();
+      noise.unit = components_[j].unit;
     }
   }
   return all;

@@ -21,7 +21,14 @@ void replace_file(const std::filesystem::path& file,
   const auto temporary = file.parent_path() / (".new-" + file.filename().string());
   std::error_code ignored;
   errno = 0;
-  if (!write(temporary)) {
+  bool written = false;
+  try {
+    written = write(temporary);
+  } catch (...) {
+    std::filesystem::remove(temporary, ignored);
+    throw;
+  }
+  if (!written) {
     const std::string reason = errno != 0 ? std::string(": ") + std::strerror(errno) : "";
     std::filesystem::remove(temporary, ignored);
     throw std::runtime_error("cannot write " + file.string() + reason);

@@ -12,7 +12,7 @@ namespace libslam {
 void replace_file(const std::filesystem::path& file, std::string_view text);
 
 /// The same for a writer that wants a path: `write` gets the temporary name and returns false where
-/// it failed. The temporary name ends like `file`.
+/// it failed. The temporary name ends like `file`. What `write` throws passes through.
 void replace_file(const std::filesystem::path& file,
                   const std::function<bool(const std::filesystem::path&)>& write);
 

@@ -119,6 +119,11 @@ void Recorder::write_row(const StepRecord& step) {
   last_row_time_ = step.time;
 }
 
+void Recorder::add_smoothed_path(Trajectory path) {
+  replace_file(options_.directory / "trajectory_smoothed.tum", tum_text(path));
+  smoothed_ = std::move(path);
+}
+
 void Recorder::add_picture(ReportPicture picture) {
   check_picture(picture);
   pictures_.push_back(std::move(picture));
@@ -159,6 +164,8 @@ RunSummary Recorder::finish(RunSummary summary, const LandmarkMap& map, const Gr
   if (!truth.empty())
     summary.truth = compare_with_truth(path, map, calibration_means(summary.result.calibration),
                                        truth, identity, {summary.result.placement});
+  if (smoothed_ && summary.truth)
+    summary.truth->relations_smoothed = compare_relations(*smoothed_, truth.relations);
   replace_file(options_.directory / "run.json", to_json_text(summary));
   if (options_.report)
     replace_file(options_.directory / "report.html",

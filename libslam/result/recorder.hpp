@@ -42,6 +42,10 @@ class Recorder {
   /// character, or the columns (TrajectoryColumns) are not those of the first step.
   void record(const StepRecord& step);
 
+  /// The path as it is known at the end: writes trajectory_smoothed.tum; finish() compares it with
+  /// the relations of the truth. Throws std::runtime_error naming the file that cannot be written.
+  void add_smoothed_path(Trajectory path);
+
   /// A picture for the report. Throws std::invalid_argument where `png` is no PNG.
   void add_picture(ReportPicture picture);
 
@@ -73,6 +77,7 @@ class Recorder {
   std::optional<StepRecord> last_;
   StepStatistics statistics_;
   std::vector<ReportPicture> pictures_;
+  std::optional<Trajectory> smoothed_;
 };
 
 }  // namespace libslam

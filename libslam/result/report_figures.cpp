@@ -87,6 +87,24 @@ std::string path_card(const TruthComparison& truth) {
   return card.row("matched poses", std::to_string(path.poses)).html();
 }
 
+void add_relations(Card& card, const std::string& path, const RelationErrors& errors) {
+  card.row(path + ", translation", format_figure(errors.trans_mean_m, "m") + " \u00b1 " +
+                                       format_figure(errors.trans_std_m, "m"))
+      .row(path + ", rotation", format_figure(errors.rot_mean_deg, "\u00b0") + " \u00b1 " +
+                                    format_figure(errors.rot_std_deg, "\u00b0"));
+}
+
+std::string relations_card(const TruthComparison& truth) {
+  if (!truth.relations) return "";
+  Card card("Path against relations");
+  if (truth.relations_smoothed) add_relations(card, "smoothed", *truth.relations_smoothed);
+  add_relations(card, "on line", *truth.relations);
+  return card
+      .row("matched / unmatched", std::to_string(truth.relations->matched) + " / " +
+                                      std::to_string(truth.relations->unmatched))
+      .html();
+}
+
 std::string map_card(const TruthComparison& truth) {
   if (!truth.map) return "";
   const MapErrors& map = *truth.map;
@@ -166,6 +184,10 @@ std::string timing_card(const RunSummary& s) {
                                        format_figure(s.timing.step_ms->p50, "ms"))
         .row("step p95 / max", format_figure(s.timing.step_ms->p95, "ms") + " / " +
                                    format_figure(s.timing.step_ms->max, "ms"));
+  if (s.timing.updates && s.timing.updates_without_stretch)
+    card.row("updates / without stretch", std::to_string(*s.timing.updates) + " / " +
+                                              std::to_string(*s.timing.updates_without_stretch))
+        .row("time saved", s.timing.saved_s, "s");
   return card
       .row("wall / CPU",
            format_figure(s.timing.wall_s, "s") + " / " + format_figure(s.timing.cpu_s, "s"))
@@ -178,7 +200,8 @@ std::string timing_card(const RunSummary& s) {
 
 std::string key_figures_html(const RunSummary& summary) {
   std::string html = run_card(summary);
-  if (summary.truth) html += path_card(*summary.truth) + map_card(*summary.truth);
+  if (summary.truth)
+    html += path_card(*summary.truth) + relations_card(*summary.truth) + map_card(*summary.truth);
   return html + consistency_card(summary) + calibration_card(summary) + noise_card(summary) +
          events_card(summary) + timing_card(summary);
 }

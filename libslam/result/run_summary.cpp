@@ -97,6 +97,9 @@ void visit_timing(const auto& v, auto& timing, auto& step_ms) {
   v("phases", timing.phases);
   v("peak_rss_mb", timing.peak_rss_mb);
   v("realtime_factor", timing.realtime_factor);
+  v("updates", timing.updates);
+  v("updates_without_stretch", timing.updates_without_stretch);
+  v("saved_s", timing.saved_s);
 }
 
 void visit_health(const auto& v, auto& health) {

@@ -52,6 +52,10 @@ struct RunSummary {
     std::optional<StepTime> step_ms;
     std::map<std::string, double> phases;  ///< name -> total time [s]
     std::optional<double> peak_rss_mb, realtime_factor;
+    /// Of a schedule that the features stretch: updates made, those of the plain schedule, and the
+    /// time that the difference would have taken at the mean time of an update [s].
+    std::optional<std::int64_t> updates, updates_without_stretch;
+    std::optional<double> saved_s;
   };
   struct Health {
     std::optional<double> nis_mean;  ///< NIS per degree of freedom, ideal 1

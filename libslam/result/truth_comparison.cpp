@@ -115,6 +115,7 @@ TruthComparison compare_with_truth(const PathView& estimate, const LandmarkMap& 
     compare_in_space(estimate, map, truth, identity, rules, result);
   else
     compare_in_plane(estimate.poses, map, truth, identity, rules, result);
+  result.relations = compare_relations(estimate.poses, truth.relations);
   for (const auto& [name, value] : calibration)
     if (const auto found = truth.calibration.find(name); found != truth.calibration.end())
       result.calibration_error[name] = value - found->second;

@@ -15,6 +15,7 @@
 #include <libslam/data/step_record.hpp>
 #include <libslam/map/landmark_map.hpp>
 #include <libslam/result/metrics.hpp>
+#include <libslam/result/relations.hpp>
 
 namespace libslam {
 
@@ -24,7 +25,9 @@ struct TruthComparison {
   std::optional<RelativeErrors> relative;
   std::optional<NeesSummary> nees;
   std::optional<MapErrors> map;
-  std::map<std::string, double> calibration_error;  ///< estimate - truth
+  std::optional<RelationErrors> relations;           ///< of the path as it was driven
+  std::optional<RelationErrors> relations_smoothed;  ///< of the path as it was known at the end
+  std::map<std::string, double> calibration_error;   ///< estimate - truth
   /// T_truth_filter used for raw figures, else the fit of the path; absent without a path. One of
   /// the two: of a comparison in the plane, or in space.
   std::optional<mrpt::math::TPose2D> placement;

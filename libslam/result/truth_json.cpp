@@ -54,6 +54,12 @@ void write_map(Json& out, const MapErrors& map) {
   out["landmarks_duplicate"] = map.duplicates;
 }
 
+void write_relations(Json& out, const RelationErrors& relations) {
+  out = {{"trans_mean_m", relations.trans_mean_m}, {"trans_std_m", relations.trans_std_m},
+         {"rot_mean_deg", relations.rot_mean_deg}, {"rot_std_deg", relations.rot_std_deg},
+         {"matched", relations.matched},           {"unmatched", relations.unmatched}};
+}
+
 /// The value under `key`, or nothing; null counts as nothing.
 template <typename T = double>
 std::optional<T> read(const Json& in, const char* key) {
@@ -109,6 +115,11 @@ NeesSummary read_nees(const Json& in) {
   return nees;
 }
 
+RelationErrors read_relations(const Json& in) {
+  return {number(in, "trans_mean_m"), number(in, "trans_std_m"), number(in, "rot_mean_deg"),
+          number(in, "rot_std_deg"),  count(in, "matched"),      count(in, "unmatched")};
+}
+
 }  // namespace
 
 Json truth_to_json(const TruthComparison& truth) {
@@ -122,6 +133,9 @@ Json truth_to_json(const TruthComparison& truth) {
   }
   if (truth.nees) write_nees(out, *truth.nees);
   if (truth.map) write_map(out, *truth.map);
+  if (truth.relations) write_relations(out["relations"], *truth.relations);
+  if (truth.relations_smoothed)
+    write_relations(out["relations_smoothed"], *truth.relations_smoothed);
   for (const auto& [name, error] : truth.calibration_error) out["calibration_error"][name] = error;
   return out;
 }
@@ -141,6 +155,10 @@ TruthComparison truth_from_json(const Json& object) {
     truth.map->rmse_m = read(object, "map_rmse_m");
     truth.map->rmse_aligned_m = read(object, "map_rmse_aligned_m");
   }
+  if (const auto relations = object.find("relations"); relations != object.end())
+    truth.relations = read_relations(*relations);
+  if (const auto relations = object.find("relations_smoothed"); relations != object.end())
+    truth.relations_smoothed = read_relations(*relations);
   if (const auto errors = object.find("calibration_error"); errors != object.end())
     errors->get_to(truth.calibration_error);
   return truth;

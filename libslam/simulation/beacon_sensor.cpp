@@ -2,7 +2,7 @@
 
 #include <libslam/data/feature.hpp>
 #include <libslam/simulation/beacon_sensor.hpp>
-#include <libslam/simulation/planar_pose.hpp>
+#include <libslam/state/planar_pose.hpp>
 
 namespace libslam {
 

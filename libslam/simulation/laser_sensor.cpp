@@ -4,7 +4,7 @@
 #include <mrpt/obs/CObservation2DRangeScan.h>
 
 #include <libslam/simulation/laser_sensor.hpp>
-#include <libslam/simulation/planar_pose.hpp>
+#include <libslam/state/planar_pose.hpp>
 
 namespace libslam {
 

@@ -5,7 +5,7 @@
 #include <mrpt/poses/CPosePDFGaussian.h>
 
 #include <libslam/simulation/odometry_log.hpp>
-#include <libslam/simulation/planar_pose.hpp>
+#include <libslam/state/planar_pose.hpp>
 
 namespace libslam {
 

@@ -3,8 +3,8 @@
 #include <mrpt/obs/CObservationBearingRange.h>
 
 #include <libslam/data/feature.hpp>
-#include <libslam/simulation/planar_pose.hpp>
 #include <libslam/simulation/range_bearing_sensor.hpp>
+#include <libslam/state/planar_pose.hpp>
 
 namespace libslam {
 

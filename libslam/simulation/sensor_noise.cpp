@@ -1,5 +1,5 @@
-#include <libslam/simulation/planar_pose.hpp>
 #include <libslam/simulation/sensor_noise.hpp>
+#include <libslam/state/planar_pose.hpp>
 
 namespace libslam {
 

@@ -4,8 +4,8 @@
 
 #include <mrpt/obs/CObservationStereoImages.h>
 
-#include <libslam/simulation/planar_pose.hpp>
 #include <libslam/simulation/stereo_image_sensor.hpp>
+#include <libslam/state/planar_pose.hpp>
 
 namespace libslam {
 

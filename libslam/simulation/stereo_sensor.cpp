@@ -2,8 +2,8 @@
 
 #include <mrpt/obs/CObservationStereoImagesFeatures.h>
 
-#include <libslam/simulation/planar_pose.hpp>
 #include <libslam/simulation/stereo_sensor.hpp>
+#include <libslam/state/planar_pose.hpp>
 
 namespace libslam {
 

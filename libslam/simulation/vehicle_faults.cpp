@@ -1,9 +1,9 @@
 #include <cmath>
 #include <random>
 
-#include <libslam/simulation/planar_pose.hpp>
 #include <libslam/simulation/random_stream.hpp>
 #include <libslam/simulation/vehicle_faults.hpp>
+#include <libslam/state/planar_pose.hpp>
 
 namespace libslam {
 

@@ -3,8 +3,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include <libslam/simulation/planar_pose.hpp>
 #include <libslam/simulation/way_point_driver.hpp>
+#include <libslam/state/planar_pose.hpp>
 
 namespace libslam {
 

@@ -118,6 +118,17 @@ BlockId GaussianState::augment(const BlockSpec& spec, const Initialization& init
   return append(spec, initialization.estimate);
 }
 
+BlockId GaussianState::clone(BlockId block, const std::string& name) {
+  BlockSpec copy = spec(block);
+  copy.name = name;
+  const Index d = size(block);
+  Initialization identity;
+  identity.estimate = estimate(block);
+  identity.wrt.add(block, d, d).setIdentity();
+  identity.cov_noise.setZero(d, d);
+  return augment(copy, identity);
+}
+
 void GaussianState::remove(BlockId block) {
   const Slot removed = slot(block);
   slots_[static_cast<std::size_t>(block.value)].alive = false;

@@ -32,6 +32,8 @@ class GaussianState {
   BlockId add(const BlockSpec& spec, const VectorRef& estimate, const MatrixRef& cov);
   /// Adds a block that is a function of others (a new landmark, a cloned pose).
   BlockId augment(const BlockSpec& spec, const Initialization& initialization);
+  /// Adds a copy of a block, fully correlated with it: the same now, free to differ later.
+  BlockId clone(BlockId block, const std::string& name);
   /// Adds a block that is known exactly: it has an estimate and no error, so it takes no room in
   /// the covariance and costs nothing there. Its covariances are zero; derivatives with respect to
   /// it are left out by the filter.

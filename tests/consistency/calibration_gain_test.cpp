@@ -1,5 +1,5 @@
 // Calibration while mapping, against the same filter that trusts its odometry. Bounds are those of
-// the specification (S1, and the figures from six batches of fifty runs); the measured
+// the specification (S1, and the figures from six batches of fifty runs); the measured
 // values stand beside them.
 
 #include <tests/consistency/campaign_run.hpp>

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cstdio>
 #include <functional>
 #include <numeric>
 #include <random>
@@ -78,12 +79,22 @@ class Drives {
     std::ranges::sort(recoveries_);
   }
 
+  /// The figures of docs/adaptation.md.
+  void print(const char* what) const {
+    std::printf("%-34s map %.3f m, path %.3f m, alarms %.2f per run", what,
+                mean(&DisturbedDrive::landmark_rmse), mean(&DisturbedDrive::position_rmse),
+                events("disturbance"));
+    if (!recoveries_.empty())
+      std::printf(", back after %d / %d, never %td of %zu", quantile(0.5), quantile(0.9), never(),
+                  recoveries_.size());
+    std::printf("\n");
+  }
   const std::vector<DisturbedDrive>& drives() const { return drives_; }
   int quantile(double part) const {
     return recoveries_.at(static_cast<std::size_t>(part * static_cast<double>(recoveries_.size())));
   }
   /// Events that the filter did not recover from.
-  auto never() const { return std::ranges::count(recoveries_, kNever); }
+  std::ptrdiff_t never() const { return std::ranges::count(recoveries_, kNever); }
   double mean(double DisturbedDrive::*figure) const {
     double sum = 0.0;
     for (const DisturbedDrive& drive : drives_) sum += drive.*figure;
@@ -109,6 +120,8 @@ constexpr const char* kLikelihood = "maximum_likelihood";
 
 TEST(Disturbance, CostsNothingWhereNothingHappens) {
   const Drives with(kLikelihood, undisturbed), without("none", undisturbed);
+  with.print("undisturbed");
+  without.print("undisturbed, no response");
   EXPECT_LE(with.events("disturbance"), 0.2);
   EXPECT_EQ(with.events("lost"), 0.0);
   EXPECT_LE(with.mean(&DisturbedDrive::position_rmse),
@@ -122,6 +135,7 @@ TEST(Disturbance, FindsBackAfterAKidnapAndKeepsItsMap) {
   for (const auto& [forward, turn] : {std::pair{1.0, 0.0}, {3.0, 0.0}, {3.0, 20.0}}) {
     SCOPED_TRACE(std::to_string(forward) + " m, " + std::to_string(turn) + " deg");
     const Drives drives(kLikelihood, kidnap(forward, turn));
+    drives.print(turn > 0.0 ? "3 m and 20 deg" : forward > 2.0 ? "3 m" : "1 m");
     EXPECT_LE(drives.quantile(0.5), 15);
     EXPECT_LE(drives.quantile(0.9), 45);
     EXPECT_LE(drives.never(), 1);
@@ -133,6 +147,9 @@ TEST(Disturbance, FindsBackAfterAKidnapAndKeepsItsMap) {
 // Measured: 1.06 times the calm map; 1.52 times without hindsight, 1.88 times without a response.
 TEST(Disturbance, FindsBackAfterSlips) {
   const Drives calm("none", undisturbed), drives(kLikelihood, slips);
+  drives.print("slips");
+  Drives("foresight_alone", slips).print("slips, without hindsight");
+  Drives("none", slips).print("slips, no response");
   EXPECT_GT(drives.events("disturbance"), 1.0);
   EXPECT_LE(drives.quantile(0.5), 15);
   EXPECT_LE(drives.quantile(0.9), 45);
@@ -144,12 +161,15 @@ TEST(Disturbance, FindsBackAfterSlips) {
 // What the seed may be read to say, for comparison.
 TEST(Disturbance, InflatingEverythingRuinsTheMap) {
   const Drives literal("literal", kidnap(3.0, 20.0)), pose(kLikelihood, kidnap(3.0, 20.0));
+  literal.print("3 m and 20 deg, all of P inflated");
   EXPECT_GT(literal.mean(&DisturbedDrive::landmark_rmse),
             2.0 * pose.mean(&DisturbedDrive::landmark_rmse));
 }
 
 TEST(Disturbance, FindsBackWithoutIdentities) {
   const Drives drives("unknown", kidnap(3.0, 20.0));
+  drives.print("3 m and 20 deg, no identities");
+  Drives("unknown_none", kidnap(3.0, 20.0)).print("3 m and 20 deg, none, no response");
   EXPECT_LE(drives.never(), 3);
   EXPECT_LE(drives.quantile(0.5), 15);
 }
@@ -157,7 +177,7 @@ TEST(Disturbance, FindsBackWithoutIdentities) {
 // Of those that see four landmarks of their map at a time: back within twenty such views. Many
 // places of this sparse world show one landmark or none for half a minute.
 TEST(Disturbance, FindsItselfAnywhereInItsMap) {
-  const Drives drives("unknown", anywhere, 250);
+  const Drives drives("unknown", anywhere, 180);
   int wrong = 0, judged = 0, back_in_time = 0;
   for (const DisturbedDrive& drive : drives.drives()) {
     wrong += drive.wrong_recovery ? 1 : 0;
@@ -165,10 +185,12 @@ TEST(Disturbance, FindsItselfAnywhereInItsMap) {
     ++judged;
     back_in_time += drive.back && drive.views <= kViews ? 1 : 0;
   }
-  EXPECT_EQ(wrong, 0);
-  EXPECT_GE(judged, 40);
-  EXPECT_GE(back_in_time, 0.95 * judged) << "of " << judged;
   const auto back = std::ranges::count_if(drives.drives(), &DisturbedDrive::back);
+  std::printf("to anywhere: %td of %zu back, %d of %d judged in time, %d in a wrong place\n", back,
+              drives.drives().size(), back_in_time, judged, wrong);
+  EXPECT_EQ(wrong, 0);
+  EXPECT_GE(judged, 30);
+  EXPECT_GE(back_in_time, 0.95 * judged) << "of " << judged;
   EXPECT_GE(back, 0.95 * static_cast<double>(drives.drives().size()));
 }
 

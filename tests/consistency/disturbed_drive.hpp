@@ -12,7 +12,7 @@
 #include <libslam/data/step_events.hpp>
 #include <libslam/pipeline/pipeline.hpp>
 #include <libslam/pipeline/simulation.hpp>
-#include <libslam/simulation/planar_pose.hpp>
+#include <libslam/state/planar_pose.hpp>
 
 namespace libslam::test {
 

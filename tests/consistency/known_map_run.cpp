@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <tests/consistency/known_map_run.hpp>
 #include <thread>
 
@@ -9,7 +10,7 @@
 #include <libslam/frontend/odometry.hpp>
 #include <libslam/pipeline/factory.hpp>
 #include <libslam/pipeline/simulation.hpp>
-#include <libslam/simulation/planar_pose.hpp>
+#include <libslam/state/planar_pose.hpp>
 
 namespace libslam::test {
 
@@ -45,17 +46,21 @@ class KnownMap final : public MeasurementModel {
 
 class Localizer {
  public:
-  Localizer(const Parameters& parameters, const Places& places)
+  /// `known`: the step of the noise that the filter is told of; null: none.
+  Localizer(const Parameters& parameters, const Places& places, const NoiseStepParameters* known)
       : odometry_(parameters.input),
         frontend_(make_frontend(parameters)),
-        filter_(parts(parameters, places)) {}
+        filter_(parts(parameters, places)),
+        known_(known) {}
 
   void process(const LogStep& step, const Eigen::Vector3d& truth) {
     if (step.action)
       if (const auto action = odometry_.read(step)) filter_.propagate(&*action);
     if (!step.frame) return;
     frontend_->extract(*step.frame, batches_);
-    for (const FeatureBatch& batch : batches_) {
+    if (!start_time_) start_time_ = step.time;
+    for (FeatureBatch& batch : batches_) {
+      if (known_ != nullptr) tell_noise(step.time - *start_time_, batch);
       const UpdateOutcome outcome = filter_.update(batch);
       if (!filter_.healthy() || (outcome.accepted == 0 && outcome.gated == count(outcome)))
         ++figures.unused;
@@ -78,6 +83,10 @@ class Localizer {
   int observations = 0, nees_count = 0;
 
  private:
+  void tell_noise(double time, FeatureBatch& batch) const {
+    if (time < known_->begin_s || time >= known_->end_s) return;
+    for (Feature& feature : batch) feature.cov *= known_->factor * known_->factor;
+  }
   static int count(const UpdateOutcome& outcome) {
     return std::max(1, static_cast<int>(outcome.verdicts.size()));
   }
@@ -90,20 +99,24 @@ class Localizer {
   OdometryReader odometry_;
   std::unique_ptr<Frontend> frontend_;
   EkfSlam filter_;
+  const NoiseStepParameters* known_;
+  std::optional<double> start_time_;
   std::vector<FeatureBatch> batches_;
 };
 
-std::vector<std::unique_ptr<Localizer>> drive(const Scenario& scenario,
-                                              const std::map<std::string, Parameters>& filters,
-                                              std::uint64_t seed) {
+std::vector<std::unique_ptr<Localizer>> drive(
+    const Scenario& scenario, const std::map<std::string, LocalizationFilter>& filters,
+    std::uint64_t seed) {
   const auto simulator = make_simulator(scenario, seed);
   Places places;
   for (const TrueLandmark& landmark : simulator->landmarks())
     places[landmark.id] =
         transform_back(simulator->start(), Eigen::Vector2d(landmark.position.head<2>()));
   std::vector<std::unique_ptr<Localizer>> lanes;
-  for (const auto& [name, parameters] : filters)
-    lanes.push_back(std::make_unique<Localizer>(parameters, places));
+  for (const auto& [name, filter] : filters)
+    lanes.push_back(std::make_unique<Localizer>(
+        filter.parameters, places,
+        filter.knows_the_noise_step ? &scenario.faults.noise_step : nullptr));
   while (const auto step = simulator->next())
     for (auto& lane : lanes)
       lane->process(step->step, relative_pose(simulator->start(), step->T_world_robot));
@@ -137,19 +150,20 @@ LocalizationFigures pooled(const std::vector<std::vector<std::unique_ptr<Localiz
 }  // namespace
 
 std::map<std::string, LocalizationFigures> localize(
-    const Scenario& scenario, const std::map<std::string, Parameters>& filters, int drives) {
+    const Scenario& scenario, const std::map<std::string, LocalizationFilter>& filters, int drives,
+    std::uint64_t first_seed) {
   std::vector<std::vector<std::unique_ptr<Localizer>>> done(static_cast<std::size_t>(drives));
   std::vector<std::jthread> threads;
   const std::size_t workers = std::max(1U, std::thread::hardware_concurrency());
   for (std::size_t worker = 0; worker < workers; ++worker)
     threads.emplace_back([&, worker] {
       for (std::size_t i = worker; i < done.size(); i += workers)
-        done[i] = drive(scenario, filters, i + 1);
+        done[i] = drive(scenario, filters, first_seed + i);
     });
   threads.clear();
   std::map<std::string, LocalizationFigures> figures;
   std::size_t lane = 0;
-  for (const auto& [name, parameters] : filters) figures[name] = pooled(done, lane++);
+  for (const auto& [name, filter] : filters) figures[name] = pooled(done, lane++);
   return figures;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 // Localization in a known map on simulated drives, filter by filter on the same logs.
 
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <string>
@@ -11,6 +12,11 @@
 
 namespace libslam::test {
 
+struct LocalizationFilter {
+  Parameters parameters;              ///< complete
+  bool knows_the_noise_step = false;  ///< is given the true R at every time
+};
+
 /// One filter, over many drives.
 struct LocalizationFigures {
   double rmse_position = 0.0;  ///< over all observations of all drives [m]
@@ -20,8 +26,9 @@ struct LocalizationFigures {
   std::vector<double> sigma_range;
 };
 
-/// Drives with seeds 1 ... `drives`; `filters` by name, their parameters complete.
+/// Drives with seeds `first_seed` and on; `filters` by name.
 std::map<std::string, LocalizationFigures> localize(
-    const Scenario& scenario, const std::map<std::string, Parameters>& filters, int drives);
+    const Scenario& scenario, const std::map<std::string, LocalizationFilter>& filters, int drives,
+    std::uint64_t first_seed = 1);
 
 }  // namespace libslam::test

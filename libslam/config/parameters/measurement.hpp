@@ -7,6 +7,7 @@
 #include <libslam/config/parameters/scan_lines.hpp>
 #include <libslam/config/parameters/stereo.hpp>
 #include <libslam/config/parameters/stereo_noise.hpp>
+#include <libslam/config/parameters/trunks.hpp>
 
 namespace libslam {
 
@@ -18,24 +19,26 @@ struct FrontendParameters {
   ScanLinesParameters lines;
   StereoFrontendParameters stereo;
   FiducialParameters fiducials;
+  TrunkParameters trunks;
 
   void describe(auto& v) {
     v.value("source", source,
             {"",
              "Where features come from: range-bearing observations, the path that a sensor reports "
              "of itself (odometry observations labelled input.sensor_label), logged points of a "
-             "stereo camera, points of its images, tags in its images, or straight lines in the "
+             "stereo camera, points of its images, tags in its images, straight lines or trunks in the "
              "scans of a laser.",
              0,
              0,
              {"range_bearing", "sensor_path", "stereo_points", "stereo_images", "fiducials",
-              "scan_lines"}});
+              "scan_lines", "scan_trunks"}});
     v.value("min_range", min_range,
             {"m", "Nearer observations are ignored; of stereo points by their depth.", 0});
     v.value("max_range", max_range, {"m", "Farther observations are ignored.", 0});
     v.section("lines", lines);
     v.section("stereo", stereo);
     v.section("fiducials", fiducials);
+    v.section("trunks", trunks);
   }
 };
 

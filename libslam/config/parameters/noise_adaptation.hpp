@@ -33,7 +33,9 @@ struct NoiseAdaptationParameters {
             {"1", "Weight of the past per update: R remembers about 1 / (1 - forgetting) updates.",
              0.5, 0.99999});
     v.value("prior_weight", prior_weight,
-            {"1", "The noise that the log or the configuration gives counts like so many updates.",
+            {"1",
+             "The noise that the log or the configuration gives counts like so many measurements "
+             "(sightings).",
              1, 1e6});
     v.value("channels", channels,
             {"1",
@@ -42,11 +44,15 @@ struct NoiseAdaptationParameters {
              1, 100});
     v.value("bias", bias,
             {"", "Estimate a constant offset of the measurements, too; needs a known map."});
-    v.value("eigenvalue_floor", eigenvalue_floor,
-            {"1",
-             "Smallest eigenvalue of the adapted R relative to the configured R (classic); 0: no "
-             "repair, the filter then rejects what it cannot use.",
-             0, 1});
+    v.value(
+        "eigenvalue_floor", eigenvalue_floor,
+        {"1",
+         "Method classic alone: the adapted R is repaired so that no variance, in any direction, "
+         "falls below so many times the configured one (a ratio of variances: 0.01 is a tenth "
+         "of sigma). Lower it if the sensor may be more than ten times better than "
+         "configured, raise it towards 1 if R collapses; 0: no repair, the filter then "
+         "rejects what it cannot use.",
+         0, 1});
     v.value("min_sigma_range", min_sigma_range, {"m", "Floor of a range's sigma.", 1e-9});
     v.value("max_sigma_range", max_sigma_range, {"m", "Ceiling of a range's sigma.", 1e-9});
     v.value("range_growth_per_m", range_growth_per_m,

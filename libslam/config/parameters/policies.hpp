@@ -5,6 +5,7 @@
 #include <libslam/config/parameters/disturbance.hpp>
 #include <libslam/config/parameters/implied_input.hpp>
 #include <libslam/config/parameters/noise_adaptation.hpp>
+#include <libslam/config/parameters/update_schedule.hpp>
 
 namespace libslam {
 
@@ -12,6 +13,7 @@ namespace libslam {
 struct PolicyParameters {
   double update_period_s = 0.0;
   int update_every_n = 1;
+  UpdateScheduleParameters update_schedule;
   NoiseAdaptationParameters noise_adaptation;
   ProcessAdaptationParameters process_adaptation;
   DisturbanceParameters disturbance;
@@ -24,6 +26,7 @@ struct PolicyParameters {
              "and more frequent updates make the filter overconfident.",
              0});
     v.value("update_every_n", update_every_n, {"1", "Use every n-th observation frame only.", 1});
+    v.section("update_schedule", update_schedule);
     v.section("noise_adaptation", noise_adaptation);
     v.section("process_adaptation", process_adaptation);
     v.section("disturbance", disturbance);

@@ -134,9 +134,11 @@ void check_disturbance(const Parameters& p, Conflicts& conflicts) {
 }  // namespace
 
 void check_policies(const Parameters& p, Conflicts& conflicts) {
-  if (p.policies.update_period_s > 0.0 && p.policies.update_every_n > 1) {
-    conflicts.push_back({{"policies.update_every_n", "policies.update_period_s"},
-                         "two schedules for the same updates; keep the period or the count"});
+  const UpdateScheduleParameters& schedule = p.policies.update_schedule;
+  if (schedule.per_feature > 0.0 && schedule.form == "relative" &&
+      !(p.policies.update_period_s > 0.0)) {
+    conflicts.push_back({{"policies.update_schedule.per_feature", "policies.update_period_s"},
+                         "there is no period to stretch; give one, or take the absolute form"});
   }
   check_noise_adaptation(p, conflicts);
   check_process_adaptation(p, conflicts);

@@ -10,6 +10,19 @@ void check_frontend(const Parameters& p, Conflicts& conflicts) {
                          "no observation lies between a nearest and a farthest range in this "
                          "order"});
   }
+  if (p.frontend.source != "scan_trunks") return;
+  if (p.frontend.trunks.min_diameter >= p.frontend.trunks.max_diameter) {
+    conflicts.push_back({{"frontend.trunks.min_diameter", "frontend.trunks.max_diameter"},
+                         "no trunk lies between a thinnest and a thickest one in this order"});
+  }
+  if (p.association.method == "known") {
+    conflicts.push_back({{"frontend.source", "association.method"},
+                         "trunks in a scan have no identities; associate them by their place"});
+  }
+  if (p.measurement.model != "range_bearing" && p.measurement.model != "sensor_displacement") {
+    conflicts.push_back(
+        {{"frontend.source", "measurement.model"}, "trunks are seen by range and bearing"});
+  }
 }
 
 void check_displacement(const Parameters& p, Conflicts& conflicts) {

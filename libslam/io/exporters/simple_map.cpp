@@ -2,7 +2,6 @@
 #include <cmath>
 #include <stdexcept>
 
-#include <mrpt/maps/CSimpleMap.h>
 #include <mrpt/math/CQuaternion.h>
 #include <mrpt/poses/CPose3DPDFGaussian.h>
 #include <mrpt/poses/CPosePDFGaussian.h>
@@ -55,7 +54,7 @@ bool SimpleMapWriter::is_far_enough(const SpatialPose& place) const {
 }
 
 void SimpleMapWriter::add(const Eigen::Vector3d& pose, const Eigen::Matrix3d& cov,
-                          const mrpt::obs::CSensoryFrame::Ptr& frame) {
+                          const mrpt::obs::CSensoryFrame::Ptr& frame, double time) {
   if (!frame) return;
   const SpatialPose place = lift_to_space({&pose, 1}).front();
   if (!is_far_enough(place)) return;
@@ -67,14 +66,29 @@ void SimpleMapWriter::add(const Eigen::Vector3d& pose, const Eigen::Matrix3d& co
                                                planar);
   pairs_.push_back({place,
                     mrpt::poses::CPose3DPDF::Ptr(mrpt::poses::CPose3DPDF::createFrom2D(gaussian)),
-                    frame});
+                    frame, time});
 }
 
 void SimpleMapWriter::add(const SpatialEstimate& estimate,
-                          const mrpt::obs::CSensoryFrame::Ptr& frame) {
+                          const mrpt::obs::CSensoryFrame::Ptr& frame, double time) {
   if (!frame || !is_far_enough(estimate.pose)) return;
   if (pairs_.size() == max_pairs_) drop_every_second();
-  pairs_.push_back({estimate.pose, gaussian_of(estimate), frame});
+  pairs_.push_back({estimate.pose, gaussian_of(estimate), frame, time});
+}
+
+void SimpleMapWriter::correct(const Trajectory& path) {
+  constexpr double kSameTime = 1e-6;
+  for (Pair& pair : pairs_) {
+    const auto at = std::lower_bound(path.times.begin(), path.times.end(), pair.time - kSameTime);
+    if (at == path.times.end() || *at > pair.time + kSameTime) continue;
+    const Eigen::Vector3d& pose = path.poses[static_cast<std::size_t>(at - path.times.begin())];
+    mrpt::math::CMatrixDouble66 cov;
+    mrpt::poses::CPose3D before;
+    pair.pose->getCovarianceAndMean(cov, before);
+    pair.place = lift_to_space({&pose, 1}).front();
+    pair.pose = mrpt::poses::CPose3DPDFGaussian::Create(
+        mrpt::poses::CPose3D(pose.x(), pose.y(), before.z(), pose.z(), 0.0, 0.0), cov);
+  }
 }
 
 void SimpleMapWriter::drop_every_second() {
@@ -85,11 +99,15 @@ void SimpleMapWriter::drop_every_second() {
   spacing_.turn_rad *= 2.0;
 }
 
-void SimpleMapWriter::write(const std::filesystem::path& file) const {
+mrpt::maps::CSimpleMap SimpleMapWriter::map() const {
   mrpt::maps::CSimpleMap map;
   for (const Pair& pair : pairs_) map.insert(pair.pose, pair.frame);
+  return map;
+}
+
+void SimpleMapWriter::write(const std::filesystem::path& file) const {
   replace_file(file, [&](const std::filesystem::path& temporary) {
-    return map.saveToFile(temporary.string());
+    return map().saveToFile(temporary.string());
   });
 }
 

@@ -5,10 +5,12 @@
 #include <vector>
 
 #include <Eigen/Core>
+#include <mrpt/maps/CSimpleMap.h>
 #include <mrpt/obs/CSensoryFrame.h>
 #include <mrpt/poses/CPose3DPDF.h>
 
 #include <libslam/data/spatial_pose.hpp>
+#include <libslam/data/trajectory.hpp>
 
 namespace libslam {
 
@@ -29,13 +31,19 @@ class SimpleMapWriter {
   SimpleMapWriter() : SimpleMapWriter(Spacing{}) {}
 
   /// Pose (x [m], y [m], phi [rad]) with its additive covariance, and the frame seen there; null
-  /// frames are ignored.
+  /// frames are ignored. `time` [s]: for `correct` alone.
   void add(const Eigen::Vector3d& pose, const Eigen::Matrix3d& cov,
-           const mrpt::obs::CSensoryFrame::Ptr& frame);
+           const mrpt::obs::CSensoryFrame::Ptr& frame, double time = 0.0);
   /// The same in space. The covariance becomes one of (x, y, z, yaw, pitch, roll) to first order.
-  void add(const SpatialEstimate& estimate, const mrpt::obs::CSensoryFrame::Ptr& frame);
+  void add(const SpatialEstimate& estimate, const mrpt::obs::CSensoryFrame::Ptr& frame,
+           double time = 0.0);
+  /// Moves the pairs that were added with a time of `path` to its pose then; they keep their
+  /// covariance. A path in the plane, whose times do not decrease.
+  void correct(const Trajectory& path);
 
   std::size_t size() const { return pairs_.size(); }
+  /// The pairs that were kept; their frames are shared.
+  mrpt::maps::CSimpleMap map() const;
 
   /// Replaces `file` at once or not at all. Throws std::runtime_error naming it where it cannot be
   /// written.
@@ -46,6 +54,7 @@ class SimpleMapWriter {
     SpatialPose place;  ///< decides about the spacing
     mrpt::poses::CPose3DPDF::Ptr pose;
     mrpt::obs::CSensoryFrame::Ptr frame;
+    double time = 0.0;
   };
   bool is_far_enough(const SpatialPose& place) const;
   void drop_every_second();

@@ -42,29 +42,10 @@ void read_velocities(TextReader& row, ImportedLog& log) {
 }
 
 void read_ticks(TextReader& row, const CsvLogOptions& options, ImportedLog& log) {
-  using Counters = std::array<std::int32_t, 2>;
-  const auto counter = [&](std::size_t column) {
-    const std::int64_t value = row.integer(column);
-    if (value < INT32_MIN || value > INT32_MAX) row.reject("encoder counter beyond 32 bits");
-    return static_cast<std::int32_t>(value);
-  };
-  const auto travel = [](std::int32_t now, std::int32_t before, double metres) {
-    return metres * static_cast<double>(static_cast<std::int64_t>(now) - before);
-  };
-  std::optional<Counters> last;
-  while (row.next()) {
-    const Counters ticks{counter(1), counter(2)};
-    log.add_velocity(row, row.number(0), Eigen::Vector3d::Zero());
-    ImportedOdometry& reading = log.odometry.back();
-    reading.has_velocity = false;
-    reading.ticks = ticks;
-    if (last) {
-      const double left = travel(ticks[0], (*last)[0], options.metres_per_tick_left);
-      const double right = travel(ticks[1], (*last)[1], options.metres_per_tick_right);
-      reading.arc = {(left + right) / 2, 0.0, (right - left) / options.track_width};
-    }
-    last = ticks;
-  }
+  const Eigen::Vector2d metres_per_tick(options.metres_per_tick_left,
+                                        options.metres_per_tick_right);
+  while (row.next())
+    log.add_ticks(row, row.number(0), {1, 2}, metres_per_tick, options.track_width);
   log.parameters = {{"track_width", options.track_width},
                     {"metres_per_tick_left", options.metres_per_tick_left},
                     {"metres_per_tick_right", options.metres_per_tick_right}};

@@ -61,6 +61,10 @@ class RawlogWriter {
 
   void write_scan(const ImportedScan& scan) { archive() << to_observation(scan); }
 
+  void write_laser_scan(const ImportedLaserScan& scan) {
+    archive() << to_range_scan(log_.laser, scan.time, scan.ranges);
+  }
+
   void write_frame(const ImportedScan& scan) {
     mrpt::obs::CSensoryFrame frame;
     if (!log_.scans.empty())
@@ -136,11 +140,14 @@ bool write_rawlog(const ImportedLog& log, const std::string& file,
                   const std::function<bool()>& interrupted) {
   RawlogWriter writer(log, file);
   auto scan = log.scans.begin();
+  auto laser_scan = log.laser_scans.begin();
   bool first = true;
   for (const auto& reading : log.odometry) {
     if (interrupted && interrupted()) return false;
     for (; scan != log.scans.end() && scan->time < reading.time; ++scan)
       log.as_pairs ? writer.write_frame(*scan) : writer.write_scan(*scan);
+    for (; laser_scan != log.laser_scans.end() && laser_scan->time < reading.time; ++laser_scan)
+      writer.write_laser_scan(*laser_scan);
     if (!log.as_pairs)
       writer.write_odometry(reading);
     else if (!first)
@@ -151,6 +158,7 @@ bool write_rawlog(const ImportedLog& log, const std::string& file,
   }
   for (; scan != log.scans.end(); ++scan)
     log.as_pairs ? writer.write_frame(*scan) : writer.write_scan(*scan);
+  for (; laser_scan != log.laser_scans.end(); ++laser_scan) writer.write_laser_scan(*laser_scan);
   return true;
 }
 
@@ -175,6 +183,40 @@ void ImportedLog::add_sighting(const TextReader& row, double time, ImportedSight
   sighting.bearing = std::remainder(sighting.bearing, 2.0 * M_PI);
   if (scans.empty() || time > scans.back().time) scans.push_back({time, {}});
   scans.back().sightings.push_back(std::move(sighting));
+}
+
+void ImportedLog::add_laser_scan(const TextReader& row, double time, std::size_t first,
+                                 double unit) {
+  constexpr std::size_t kMostBeams = 10000;
+  row.require_columns(first + 2);
+  const std::size_t count = row.columns() - first;
+  if (count > kMostBeams) row.reject("more than 10000 ranges");
+  if (!laser_scans.empty() && time <= laser_scans.back().time) row.reject("time does not increase");
+  if (!laser_scans.empty() && count != laser_scans.front().ranges.size())
+    row.reject("another number of ranges than in the first scan");
+  ImportedLaserScan& scan = laser_scans.emplace_back();
+  scan.time = time;
+  scan.ranges.reserve(count);
+  for (std::size_t i = first; i < row.columns(); ++i)
+    scan.ranges.push_back(static_cast<float>(unit * row.number(i)));
+}
+
+void ImportedLog::add_ticks(const TextReader& row, double time, std::array<std::size_t, 2> columns,
+                            const Eigen::Vector2d& metres_per_tick, double track) {
+  const auto last = odometry.empty() ? std::nullopt : odometry.back().ticks;
+  add_velocity(row, time, Eigen::Vector3d::Zero());
+  ImportedOdometry& reading = odometry.back();
+  reading.has_velocity = false;
+  reading.ticks.emplace();
+  Eigen::Vector2d travel = Eigen::Vector2d::Zero();
+  for (std::size_t wheel = 0; wheel < 2; ++wheel) {
+    const std::int64_t count = row.integer(columns[wheel]);
+    if (count < INT32_MIN || count > INT32_MAX) row.reject("encoder counter beyond 32 bits");
+    (*reading.ticks)[wheel] = static_cast<std::int32_t>(count);
+    const auto i = static_cast<Eigen::Index>(wheel);
+    if (last) travel[i] = metres_per_tick[i] * static_cast<double>(count - (*last)[wheel]);
+  }
+  reading.arc = {travel.mean(), 0.0, (travel[1] - travel[0]) / track};
 }
 
 void ImportedLog::add_velocity(const TextReader& row, double time,

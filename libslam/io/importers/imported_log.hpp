@@ -13,6 +13,7 @@
 
 #include <libslam/data/feature.hpp>
 #include <libslam/data/ground_truth.hpp>
+#include <libslam/io/importers/laser_scan.hpp>
 #include <libslam/io/text_reader.hpp>
 
 namespace libslam {
@@ -42,6 +43,12 @@ struct ImportedScan {
   std::vector<ImportedSighting> sightings;
 };
 
+/// The raw ranges of a laser at one time, counter-clockwise [m].
+struct ImportedLaserScan {
+  double time = 0.0;  ///< [s]
+  std::vector<float> ranges;
+};
+
 /// Where a sensor says it is, on its own path (scan matching, visual odometry).
 struct ImportedSensorPose {
   double time = 0.0;                               ///< [s]
@@ -49,9 +56,11 @@ struct ImportedSensorPose {
 };
 
 struct ImportedLog {
-  std::string scenario;                    ///< name of the data set and sequence
-  std::vector<ImportedOdometry> odometry;  ///< times never decrease
-  std::vector<ImportedScan> scans;         ///< times increase
+  std::string scenario;                        ///< name of the data set and sequence
+  std::vector<ImportedOdometry> odometry;      ///< times never decrease
+  std::vector<ImportedScan> scans;             ///< times increase
+  std::vector<ImportedLaserScan> laser_scans;  ///< times increase; not in pair logs
+  LaserGeometry laser;                         ///< of the laser scans
   /// At times of odometry readings (pair logs); written as odometry of the sensor "scan_matching".
   std::vector<ImportedSensorPose> sensor_path;
   Eigen::Vector3d T_robot_sensor = Eigen::Vector3d::Zero();  ///< x [m], y [m], phi [rad]
@@ -68,6 +77,14 @@ struct ImportedLog {
   /// Adds a sighting at `time` to the last scan, or to a new one if time has moved on. Rejects the
   /// row if time goes backwards or the range is not positive; wraps the bearing.
   void add_sighting(const TextReader& row, double time, ImportedSighting sighting);
+  /// Adds the ranges from column `first` to the end of the row [`unit` m]. Rejects the row if time
+  /// does not increase or it holds another number of ranges than the first.
+  void add_laser_scan(const TextReader& row, double time, std::size_t first, double unit = 1.0);
+  /// Adds a reading of the absolute tick counters in two columns, of a differential drive with
+  /// nominal travel per tick (left, right) [m] and track [m]. Rejects the row if time goes
+  /// backwards or a counter is beyond 32 bits.
+  void add_ticks(const TextReader& row, double time, std::array<std::size_t, 2> columns,
+                 const Eigen::Vector2d& metres_per_tick, double track);
   /// Adds a reading that moved by `velocity` (forward, sideways, turn) since the reading before.
   /// Rejects the row if time goes backwards.
   void add_velocity(const TextReader& row, double time, const Eigen::Vector3d& velocity);

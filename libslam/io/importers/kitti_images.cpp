@@ -10,9 +10,9 @@
 #include <mrpt/obs/CObservationStereoImages.h>
 #include <mrpt/serialization/CArchive.h>
 #include <nlohmann/json.hpp>
-#include <opencv2/imgcodecs.hpp>
 
 #include <libslam/data/ground_truth.hpp>
+#include <libslam/frontend/png_image.hpp>
 #include <libslam/io/importers/kitti_images.hpp>
 #include <libslam/io/input_error.hpp>
 #include <libslam/io/input_file.hpp>
@@ -107,14 +107,18 @@ std::vector<SpatialPose> read_poses(const std::string& directory) {
 /// Copies one image beside the rawlog and lets the observation name it there.
 void place_image(const fs::path& source, const fs::path& folder, const std::string& name,
                  mrpt::img::CImage& image, mrpt::img::TCamera& camera) {
-  const cv::Mat pixels = cv::imread(source.string(), cv::IMREAD_GRAYSCALE);
-  if (pixels.empty()) throw InputError(source.string() + ": is no image");
+  cv::Size size;
+  try {
+    size = read_png(source.string()).size();
+  } catch (const DamagedPng& defect) {
+    throw InputError(source.string() + ": is no image: " + defect.what());
+  }
   if (!fs::copy_file(source, folder / name, fs::copy_options::overwrite_existing))
     throw std::runtime_error((folder / name).string() + ": cannot be written");
   fs::permissions(folder / name, fs::perms::owner_write, fs::perm_options::add);  // next import
   image.setExternalStorage(name);
-  camera.ncols = static_cast<std::uint32_t>(pixels.cols);
-  camera.nrows = static_cast<std::uint32_t>(pixels.rows);
+  camera.ncols = static_cast<std::uint32_t>(size.width);
+  camera.nrows = static_cast<std::uint32_t>(size.height);
 }
 
 std::string notes_text(const std::string& directory, std::int64_t pairs, double baseline) {
@@ -134,6 +138,34 @@ std::string pair_name(std::int64_t number) {
   return name;
 }
 
+/// Removes a file that an exception leaves incomplete.
+class IncompleteFile {
+ public:
+  explicit IncompleteFile(std::string file) : file_(std::move(file)) {}
+  IncompleteFile(const IncompleteFile&) = delete;
+  IncompleteFile& operator=(const IncompleteFile&) = delete;
+  ~IncompleteFile() {
+    std::error_code ignored;
+    if (!file_.empty()) fs::remove(file_, ignored);
+  }
+  void complete() { file_.clear(); }
+
+ private:
+  std::string file_;
+};
+
+/// Throws InputError naming the first image that is missing below the highest number.
+void require_all_images(const fs::path& folder) {
+  std::int64_t images = 0;
+  for (const auto& entry : fs::directory_iterator(folder))
+    images += entry.path().extension() == ".png" ? 1 : 0;
+  for (std::int64_t k = 0; k < images; ++k)
+    if (!fs::exists(folder / pair_name(k)))
+      throw InputError((folder / pair_name(k)).string() +
+                       ": no such file, though the folder holds " + std::to_string(images) +
+                       " images");
+}
+
 }  // namespace
 
 KittiImagesSummary import_kitti_images(const std::string& directory, const std::string& rawlog,
@@ -143,10 +175,13 @@ KittiImagesSummary import_kitti_images(const std::string& directory, const std::
       read_calibration(find_input_file(directory, "calib.txt"), folders[0].filename() == "image_2");
   const std::vector<double> times = read_times(directory);
   const std::vector<SpatialPose> poses = read_poses(directory);
+  require_all_images(folders[0]);
+  remove_truth_beside(rawlog);
   const fs::path images = fs::path(rawlog).replace_extension().string() + "_Images";
   fs::create_directories(images);
   mrpt::io::CFileGZOutputStream out;
   if (!out.open(rawlog)) throw std::runtime_error(rawlog + ": cannot be written");
+  IncompleteFile unfinished(rawlog);
   auto archive = mrpt::serialization::archiveUniquePtrFrom(out);
   KittiImagesSummary summary;
   summary.baseline = camera.rightCameraPose.x;
@@ -183,7 +218,7 @@ KittiImagesSummary import_kitti_images(const std::string& directory, const std::
     throw InputError(folders[0].string() + ": holds no 000000.png");
   archive.reset();
   out.close();
-  remove_truth_beside(rawlog);
+  unfinished.complete();
   write_truth_beside(rawlog, truth, notes_text(directory, summary.pairs, summary.baseline));
   return summary;
 }

@@ -49,6 +49,18 @@ void read_identified_trees(const std::string& directory, ImportedLog& log) {
   }
 }
 
+void read_laser(const std::string& directory, ImportedLog& log) {
+  log.laser.first_bearing = -kHalfPi;
+  log.laser.resolution = kHalfPi / 180.0;
+  log.laser.max_range = kMaxRange;
+  log.laser.T_robot_sensor = log.T_robot_sensor;
+  TextReader row(find_input_file(directory + "/raw_ascii", "LASER_one_scan_per_line.txt"));
+  while (row.next()) {  // t, 361 ranges
+    if (row.columns() != 362) row.reject("a scan has 361 ranges");
+    log.add_laser_scan(row, row.number(0), 1);
+  }
+}
+
 void read_gps(const std::string& directory, ImportedLog& log) {
   TextReader row(find_input_file(directory + "/raw_ascii", "GPS.txt"));  // t, north, east
   Trajectory& path = log.truth.path;
@@ -90,6 +102,8 @@ ImportedLog import_victoria_park(const std::string& directory, const VictoriaPar
   read_odometry(directory, options, log);
   if (options.association == Association::kKnown)
     read_identified_trees(directory, log);
+  else if (options.association == Association::kRawScans)
+    read_laser(directory, log);
   else
     read_trees(directory, options.max_diameter, log);
   read_gps(directory, log);

@@ -16,7 +16,7 @@ struct AckermannDistortion {
 };
 
 struct VictoriaParkOptions {
-  enum class Association { kNone, kKnown, kIsam };
+  enum class Association { kNone, kKnown, kIsam, kRawScans };
   enum class Steering { kAa3, kDrs };
   Association association = Association::kNone;
   Steering steering = Steering::kAa3;  ///< which of the two published calibrations
@@ -27,9 +27,10 @@ struct VictoriaParkOptions {
 /// `directory` is laid out as published with its sub-folders (tree_detections, known_association,
 /// isam_gtsam, raw_ascii); files optionally with ".gz".
 ///
-/// kNone: tree detections without identities. kKnown: observations whose identities were found
-/// off-line. kIsam: relative odometry and landmark positions with covariances, as (action, frame)
-/// pairs with nominal times; see `victoria_park_isam.cpp` for the reading of its noise columns.
+/// kNone: tree detections without identities. kRawScans: the scans of the laser themselves. kKnown:
+/// observations whose identities were found off-line. kIsam: relative odometry and landmark
+/// positions with covariances, as (action, frame) pairs with nominal times; see
+/// `victoria_park_isam.cpp` for the reading of its noise columns.
 ///
 /// Odometry: with alpha the steering angle and v_e the encoder speed, the rear axle centre moves at
 /// v_c = v_e / (1 - tan(alpha) H / L) and turns at v_c tan(alpha) / L. A row is the mean since the

@@ -66,6 +66,28 @@ TEST_F(SlamEvaluate, PrintsTableJsonAndCsvOfTheSameFigures) {
   EXPECT_EQ(evaluate("--quiet " + run).out, "");
 }
 
+TEST_F(SlamEvaluate, ComparesWithRelations) {
+  const std::string run = make_run("demo");
+  std::istringstream rows(read_all(run + "/trajectory.tum"));
+  std::string first, line, last;
+  for (std::getline(rows, first); std::getline(rows, line);) last = line;
+  const std::string times = first.substr(0, first.find(' ')) + " " + last.substr(0, last.find(' '));
+  const Outcome table =
+      evaluate(run + " --relations " + write("x.relations", times + " 1000 0 0 0 0 0\n"));
+  EXPECT_EQ(table.code, 0) << table.err;
+  EXPECT_NE(table.out.find("relations, translation [m]"), std::string::npos) << table.out;
+  const Outcome json = evaluate("--json " + run + " --relations " + path("x.relations"));
+  const auto relations = nlohmann::json::parse(json.out)["runs"][0]["truth"]["relations"];
+  EXPECT_EQ(relations["matched"], 1);
+  EXPECT_GT(relations["trans_mean_m"].get<double>(), 900.0);
+  for (const char* key : {"trans_std_m", "rot_mean_deg", "rot_std_deg"})
+    EXPECT_TRUE(relations.contains(key)) << key;
+  expect_complaint(evaluate(run + " --relations " + path("none")), 4, "none: no such file");
+  expect_complaint(evaluate(run + " --relations " + write("bad", "1 2 3\n")), 4, "bad:1: ");
+  expect_complaint(evaluate(run + " --relations " + write("far", "1 2 0 0 0 0 0 0\n")), 5,
+                   "no poses at the times of the relations");
+}
+
 TEST_F(SlamEvaluate, SaysWhatCannotBeReadOrCompared) {
   expect_complaint(evaluate(path("none")), 4, "none");
   const std::string run = make_run("demo");

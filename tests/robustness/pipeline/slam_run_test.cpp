@@ -53,6 +53,22 @@ TEST_F(SlamRun, AGoodLogGivesTheWholeRunDirectory) {
   EXPECT_NE(table.out.find("again"), std::string::npos);
 }
 
+TEST_F(SlamRun, SaysWhereAdaptedNoiseIsFarFromTheConfiguredOne) {
+  const std::string adaptive = kConfig + " " + kGoodLog + " --set measurement.noise=configured" +
+                               " --set policies.noise_adaptation.method=residual" +
+                               " --set measurement.sigma_bearing_deg=";
+  const auto warned = [&] { return summary()["input"]["warnings"].dump(); };
+  EXPECT_EQ(slam_run(adaptive + "0.2").code, 0);
+  EXPECT_EQ(warned().find("bearing"), std::string::npos) << warned();
+  const Outcome outcome = slam_run(adaptive + "1 --force");
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  const std::string expected = "the sigma of bearing was adapted to ";
+  EXPECT_NE(warned().find(expected), std::string::npos) << warned();
+  EXPECT_NE(warned().find(" rad where 0.0175 rad was configured"), std::string::npos) << warned();
+  EXPECT_NE(outcome.err.find(expected), std::string::npos) << outcome.err;
+  EXPECT_NE(read_all(path("run/report.html")).find(expected), std::string::npos);
+}
+
 TEST_F(SlamRun, TheStockIniFileIsAcceptedUnchanged) {
   EXPECT_EQ(slam_run(kIni + " " + kGoodLog).code, 0);
   EXPECT_EQ(summary()["result"]["landmarks"], 70);

@@ -64,6 +64,26 @@ TEST_F(SlamSimulate, SlamRunFindsItsTruth) {
             0.05);
 }
 
+// X.filter.yaml runs on X.rawlog as it is, whichever sensor filled it.
+TEST_F(SlamSimulate, TheFilterItWritesRunsOnItsLog) {
+  const std::string folder = LIBSLAM_CONFIG_DIR "/";
+  for (const auto& [scenario, source] : {std::pair("sim_stereo.yaml", "fiducials"),
+                                         {"sim_stereo_features.yaml", "stereo_points"},
+                                         {"sim_webmap.yaml", "range_bearing"}}) {
+    ASSERT_EQ(run(kSimulate + " " + folder + scenario + " --force --out " + path("a") +
+                  " --set drive.max_duration_s=8")
+                  .code,
+              0);
+    const Outcome outcome = run(kRun + " " + path("a.filter.yaml") + " " + path("a.rawlog") +
+                                " --force --set output.report=false --out " + path("run"));
+    ASSERT_EQ(outcome.code, 0) << scenario << ": " << outcome.err;
+    const auto summary = nlohmann::json::parse(read_all(path("run/run.json")));
+    EXPECT_GT(summary.at("result").at("landmarks").get<int>(), 0) << scenario;
+    EXPECT_LT(summary.at("truth").at("ate_rmse_m").get<double>(), 1.0) << scenario;
+    EXPECT_NE(read_all(path("run/config.yaml")).find(source), std::string::npos) << scenario;
+  }
+}
+
 TEST_F(SlamSimulate, StockProgramsOpenTheLog) {
   if (run("command -v kf-slam && command -v rawlog-edit").code != 0)
     GTEST_SKIP() << "kf-slam or rawlog-edit is not installed";

@@ -11,7 +11,7 @@
 #include <libslam/pipeline/run.hpp>
 #include <libslam/pipeline/simulated_drive.hpp>
 #include <libslam/pipeline/simulation.hpp>
-#include <libslam/simulation/planar_pose.hpp>
+#include <libslam/state/planar_pose.hpp>
 
 #include "campaign_fixture.hpp"
 

@@ -119,14 +119,14 @@ TEST(SpatialValidation, RefusesParametersWithoutEffect) {
 TEST(SpatialValidation, ImpossibleMotionsNeedLandmarksThatAreForgotten) {
   Parameters p = in_space();
   p.policies.implied_input.enabled = true;
-  EXPECT_TRUE(blames(p, "association.forget_after"));
+  EXPECT_TRUE(blames(p, "policies.implied_input.enabled"));
   p.association.forget_after = 2;
-  EXPECT_FALSE(blames(p, "association.forget_after"));
+  EXPECT_FALSE(blames(p, "policies.implied_input.enabled"));
   p.association.forget_after = 0;
   p.map.file = "map.yaml";
-  EXPECT_FALSE(blames(p, "association.forget_after"));
+  EXPECT_FALSE(blames(p, "policies.implied_input.enabled"));
   p.map.mode = "continue";
-  EXPECT_TRUE(blames(p, "association.forget_after"));
+  EXPECT_TRUE(blames(p, "policies.implied_input.enabled"));
 }
 
 }  // namespace

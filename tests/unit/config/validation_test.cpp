@@ -222,13 +222,23 @@ const Case kOthers[] = {
        p.association.prune_after = 4;
      },
      {}},
-    {"two_schedules",
+    {"nothing_to_stretch",
+     [](Parameters& p) { p.policies.update_schedule.per_feature = 0.08; },
+     {"policies.update_schedule.per_feature", "policies.update_period_s"}},
+    {"composed_schedules",
      [](Parameters& p) {
        p.policies.update_period_s = 0.5;
        p.policies.update_every_n = 2;
+       p.policies.update_schedule.per_feature = 0.08;
+       p.policies.update_schedule.distance = 0.2;
      },
-     {"policies.update_every_n", "policies.update_period_s"}},
-    {"one_schedule", [](Parameters& p) { p.policies.update_every_n = 2; }, {}},
+     {}},
+    {"absolute_stretch",
+     [](Parameters& p) {
+       p.policies.update_schedule.per_feature = 0.08;
+       p.policies.update_schedule.form = "absolute";
+     },
+     {}},
     {"out_of_range",
      [](Parameters& p) { p.measurement.sigma_range = -1.0; },
      {"measurement.sigma_range"}},

@@ -99,8 +99,7 @@ TEST(DelayedPoses, LaterSightingsCorrectThePast) {
 }
 
 // A kept pose has the covariance that its error says: mean NEES of 60 runs within the 99.9 %
-// interval of chi-square with 3 x 60 degrees of freedom. The noise is a third, so that
-// linearization does not count.
+// interval of chi-square with 3 x 60 degrees of freedom.
 TEST(DelayedPoses, AreAsCertainAsTheyClaim) {
   for (const char* frame : {"standard", "right_invariant"}) {
     constexpr int kRuns = 60;

@@ -23,7 +23,10 @@ class CountingNoise final : public NoisePolicy {
  public:
   explicit CountingNoise(int& observed) : observed_(observed) {}
   void apply(std::span<Feature>) override {}
-  void observe(std::span<const Feature>, std::span<const Postfit>) override { ++observed_; }
+  bool observe(std::span<Feature>, std::span<const Postfit>) override {
+    ++observed_;
+    return false;
+  }
   std::vector<AdaptedNoise> noise() const override { return {}; }
 
  private:
@@ -153,7 +156,7 @@ TEST(DisturbanceResponse, FindsBackWithTheLandmarksThatTheGateRejected) {
     with.kidnap(1.5, 0.5, 0.3);
     without.kidnap(1.5, 0.5, 0.3);
     const UpdateOutcome first = with.step();
-    EXPECT_EQ(first.event, "disturbance");
+    EXPECT_TRUE(has_event(first.event, "disturbance"));
     EXPECT_GT(first.accepted, 3);
     EXPECT_EQ(without.step().accepted, 0);
     with.steps(4);
@@ -198,7 +201,7 @@ TEST(DisturbanceResponse, NothingLearnsAndNoLandmarkIsAddedWhileItLasts) {
   drive.world.landmarks.push_back(drive.world.pose.head<2>() + Eigen::Vector2d(1.0, 1.0));
   const std::int64_t fresh = static_cast<std::int64_t>(drive.world.landmarks.size()) - 1;
   const int before = observed;
-  EXPECT_EQ(drive.step().event, "disturbance");
+  EXPECT_TRUE(has_event(drive.step().event, "disturbance"));
   for (int k = 0; k < 3; ++k) EXPECT_EQ(drive.step().new_landmarks, 0);
   EXPECT_EQ(observed, before);
   EXPECT_FALSE(drive.filter.registry().find(fresh));

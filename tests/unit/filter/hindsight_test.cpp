@@ -3,6 +3,7 @@
 #include <cmath>
 #include <optional>
 #include <random>
+#include <tests/support/disturbance_parts.hpp>
 #include <tests/support/random_matrix.hpp>
 #include <tests/support/slam_world.hpp>
 #include <vector>
@@ -10,14 +11,12 @@
 #include <Eigen/Dense>
 #include <gtest/gtest.h>
 
-#include <libslam/association/known.hpp>
 #include <libslam/filter/ekf_slam.hpp>
 #include <libslam/filter/hindsight.hpp>
 #include <libslam/measurement/range_bearing.hpp>
-#include <libslam/motion/odometry_increment.hpp>
-#include <libslam/state/chi_square.hpp>
 
 using namespace libslam;
+using libslam::testing::disturbance_parts;
 using libslam::testing::random_matrix;
 using libslam::testing::SlamWorld;
 
@@ -187,17 +186,9 @@ TEST(Hindsight, RefusesAProbabilityThatIsNone) {
 namespace {
 
 EkfSlam make_filter(double slip_probability) {
-  EkfSlamParts parts;
-  parts.motion = std::make_unique<OdometryIncrement>(MotionParameters{}, CalibrationParameters{});
-  parts.measurement = std::make_unique<RangeBearing>();
-  parts.associator = std::make_unique<KnownAssociation>(chi_square_quantile(0.999, 2));
-  parts.frame = make_error_frame("right_invariant");
-  DisturbanceOptions options;
-  options.sigma = Eigen::Vector3d(1.0, 1.0, 0.2);
   ResponseOptions response;
   response.slip_probability = slip_probability;
-  parts.disturbance.emplace(Disturbance(options), response);
-  return EkfSlam(std::move(parts));
+  return EkfSlam(disturbance_parts(std::make_unique<RangeBearing>(), 2, response));
 }
 
 struct SlipDrive {

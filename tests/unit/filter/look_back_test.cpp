@@ -58,8 +58,11 @@ struct Problem {
 
 TEST(LookBack, IsWhatDenseAlgebraSays) {
   std::mt19937_64 random(53);
-  for (const std::vector<int>& rows :
-       {std::vector<int>{2}, {2, 2, 2}, {1, 4, 3, 2}, std::vector<int>(12, 2)}) {
+  for (const std::vector<int>& rows : {std::vector<int>{2},
+                                       {2, 2, 2},
+                                       {1, 4, 3, 2},
+                                       std::vector<int>(12, 2),
+                                       std::vector<int>(23, 3)}) {
     Problem problem(rows, random);
     const Eigen::MatrixXd before = problem.state.full_covariance();
     Ekf ekf(make_error_frame("standard"));
@@ -79,9 +82,28 @@ TEST(LookBack, IsWhatDenseAlgebraSays) {
       const double tolerance = 1e-10;
       EXPECT_EQ(postfits[i].innovation, problem.nu.segment(row, d));
       EXPECT_LT((postfits[i].cov_innovation - s.block(row, row, d, d)).norm(), tolerance);
-      EXPECT_LT((postfits[i].residual - residual.segment(row, d)).norm(), tolerance);
-      EXPECT_LT((postfits[i].cov_predicted - left.block(row, row, d, d)).norm(), tolerance);
+      const Eigen::MatrixXd r = problem.measurements[i].cov;
+      EXPECT_LT((r * postfits[i].weighted - residual.segment(row, d)).norm(), tolerance);
+      EXPECT_LT((r - r * postfits[i].information * r - left.block(row, row, d, d)).norm(),
+                tolerance);
       row += d;
     }
   }
+}
+
+TEST(LookBack, WeighingAgainWithAnotherNoiseIsAsIfItHadBeenThereAtFirst) {
+  std::mt19937_64 random(54);
+  Problem problem({2, 3, 1}, random), again = problem;
+  Ekf ekf(make_error_frame("standard"));
+  ASSERT_TRUE(ekf.weigh(again.state, again.measurements));
+  EXPECT_EQ(again.state.full_covariance(), problem.state.full_covariance());
+  for (Problem* one : {&problem, &again})
+    for (LinearizedMeasurement& measurement : one->measurements) measurement.cov *= 4.0;
+  ASSERT_TRUE(ekf.weigh(again.state, again.measurements));
+  const Correction twice = ekf.solve(again.state);
+  ekf.apply(again.state, again.pose);
+  const Correction once = ekf.correct(problem.state, problem.pose, problem.measurements);
+  EXPECT_EQ(twice.nis, once.nis);
+  EXPECT_EQ(twice.dof, 6);
+  EXPECT_EQ(again.state.full_covariance(), problem.state.full_covariance());
 }

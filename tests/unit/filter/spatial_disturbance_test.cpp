@@ -3,18 +3,17 @@
 
 #include <memory>
 #include <random>
+#include <tests/support/disturbance_parts.hpp>
 #include <tests/support/slam_world.hpp>
 
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
-#include <libslam/association/known.hpp>
 #include <libslam/filter/ekf_slam.hpp>
 #include <libslam/measurement/stereo_point.hpp>
-#include <libslam/motion/odometry_increment.hpp>
-#include <libslam/state/chi_square.hpp>
 
 using namespace libslam;
+using libslam::testing::disturbance_parts;
 using libslam::testing::SlamWorld;
 
 namespace {
@@ -31,18 +30,10 @@ std::shared_ptr<const StereoCamera> forward_camera() {
 }
 
 EkfSlamParts parts_with(bool relocalize, double slip_probability) {
-  EkfSlamParts parts;
-  parts.motion = std::make_unique<OdometryIncrement>(MotionParameters{}, CalibrationParameters{});
-  parts.measurement = std::make_unique<StereoPoint>(3);
-  parts.associator = std::make_unique<KnownAssociation>(chi_square_quantile(0.999, 3));
-  parts.frame = make_error_frame("right_invariant");
-  DisturbanceOptions options;
-  options.sigma = Eigen::Vector3d(1.0, 1.0, 0.2);
   ResponseOptions response;
   response.relocalize = relocalize;
   response.slip_probability = slip_probability;
-  parts.disturbance.emplace(Disturbance(options), response);
-  return parts;
+  return disturbance_parts(std::make_unique<StereoPoint>(3), 3, response);
 }
 
 /// What the camera sees of the landmarks of `world`, which stand at different heights.

@@ -99,6 +99,29 @@ TEST(Fiducials, ArucoCornersHaveTheSameOrder) {
   }
 }
 
+// Two cameras take turns; each keeps its calibration, and the tables that stem from it.
+TEST(Fiducials, EachCameraHasACalibrationOfItsOwn) {
+  const std::vector<TagPlate> one = {make_plate(5, {2.0, 0.1, 1.0}, 0.4, {})};
+  Fiducials frontend(fiducial_parameters("tag36h11"), "");
+  std::map<std::string, std::shared_ptr<const StereoCamera>> cameras;
+  for (int k = 0; k < 2; ++k)
+    for (const auto& [label, focal] : {std::pair("ahead", kFocal), {"aside", 1.1 * kFocal}}) {
+      const auto pair = view_of(one);
+      pair->sensorLabel = label;
+      pair->leftCamera.setIntrinsicParamsFromValues(focal, focal, 0.5 * kWidth, 0.5 * kHeight);
+      pair->rightCamera = pair->leftCamera;
+      pair->rightCamera.dist[0] = 1e-5;  // rectified here, by tables
+      const FeatureBatch batch = features_of(frontend, pair);
+      ASSERT_EQ(batch.size(), 5U) << label;
+      const auto& camera = batch.front().camera;
+      EXPECT_NEAR(camera->fx / focal, 1.0, 0.01) << label;
+      EXPECT_EQ(batch.front().channel, label == std::string("ahead") ? 0 : 1);
+      const auto [known, is_new] = cameras.emplace(label, camera);
+      EXPECT_EQ(is_new, k == 0);
+      EXPECT_EQ(known->second, camera) << label << ": the calibration was computed anew";
+    }
+}
+
 TEST(Fiducials, ATagThatIsSeenTwiceIsNowhere) {
   const std::vector<TagPlate> twice = {make_plate(5, {2.0, 0.4, 1.0}, 0.4, {}),
                                        make_plate(5, {2.0, -0.4, 1.0}, 0.4, {})};

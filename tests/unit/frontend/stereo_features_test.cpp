@@ -250,6 +250,30 @@ TEST(StereoFeatures, BadInputIsCountedAndNamed) {
          [](Pair& p) { p.leftCamera.distortion = mrpt::img::DistortionModel::kannala_brandt; });
 }
 
+// ORB works on copies smaller by up to 1.2^7 and reads a border of 31 pixels without asking.
+TEST(StereoFeatures, ImagesSmallerThanAWindowAreRefused) {
+  const Texture texture(1);
+  const auto pair_of_size = [&](int width, int height) {
+    const auto pair = wall_at(6.0);
+    pair->imageLeft = image_of([&](int x, int y) { return texture(x, y); }, width, height);
+    pair->imageRight = image_of([&](int x, int y) { return texture(x + 6, y); }, width, height);
+    return pair;
+  };
+  for (const char* detector : {"orb", "akaze", "sift"})
+    for (const char* tracker : {"descriptors", "klt"}) {
+      StereoFeatures frontend(stereo_parameters(detector, tracker), "", true);
+      std::int64_t refused = 0;
+      for (const auto& [width, height] : {std::pair(1, 1), {2, 300}, {12, 12}, {300, 63}}) {
+        EXPECT_TRUE(features_of(frontend, pair_of_size(width, height)).empty());
+        EXPECT_EQ(frontend.unusable(), ++refused) << width << " x " << height;
+        EXPECT_NE(frontend.warnings().back().find("64 x 64"), std::string::npos);
+      }
+      for (int k = 0; k < 2; ++k) features_of(frontend, pair_of_size(64, 64));  // the smallest
+      EXPECT_EQ(frontend.unusable(), refused) << detector << ' ' << tracker;
+      EXPECT_FALSE(features_of(frontend, wall_at(20.0)).empty());
+    }
+}
+
 TEST(StereoFeatures, BlankImagesGiveNothingAndEndTheTracks) {
   for (const char* tracker : {"descriptors", "klt"}) {
     StereoFeatures frontend(stereo_parameters("orb", tracker), "", true);

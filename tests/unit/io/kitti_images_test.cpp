@@ -112,9 +112,23 @@ TEST_F(KittiImages, RejectsWhatIsNoStereoData) {
   EXPECT_NE(rejection().find("right camera at the right"), std::string::npos) << rejection();
   write("calib.txt", std::string(kRow) + kRightRow);
   std::ofstream(data() / "image_r" / "000001.png") << "no image";
+  testing::internal::CaptureStderr();
   EXPECT_NE(rejection().find("000001.png: is no image"), std::string::npos) << rejection();
+  fs::remove(data() / "image_r" / "000001.png");
+  EXPECT_NE(rejection().find("image"), std::string::npos) << rejection();
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
   fs::remove_all(data() / "image_r");
   EXPECT_NE(rejection().find("no folders"), std::string::npos) << rejection();
+}
+
+TEST_F(KittiImages, AMissingImageIsNotTheEndAndLeavesNoLog) {
+  fs::remove(data() / "image_l" / "000001.png");
+  EXPECT_NE(rejection().find("000001.png: no such file"), std::string::npos) << rejection();
+  EXPECT_FALSE(fs::exists(rawlog()));
+  save("image_l", 1, 120);
+  fs::resize_file(data() / "image_l" / "000002.png", 20);
+  EXPECT_NE(rejection().find("000002.png"), std::string::npos) << rejection();
+  EXPECT_FALSE(fs::exists(rawlog()));
 }
 
 TEST_F(KittiImages, StopsWhenAskedTo) {

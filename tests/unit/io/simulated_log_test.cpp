@@ -14,7 +14,7 @@
 #include <libslam/io/truth_reader.hpp>
 #include <libslam/pipeline/pipeline.hpp>
 #include <libslam/result/trajectory.hpp>
-#include <libslam/simulation/planar_pose.hpp>
+#include <libslam/state/planar_pose.hpp>
 
 namespace libslam {
 namespace {

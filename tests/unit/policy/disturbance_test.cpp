@@ -40,6 +40,17 @@ JointInnovation draw(std::mt19937_64& random, Eigen::Index rows, double scale,
   return joint;
 }
 
+constexpr int kHold = 3;
+
+/// In doubt since the last update; `kHold` quiet ones in a row end it.
+Disturbance disturbed() {
+  DisturbanceOptions o = options();
+  o.hold = kHold;
+  Disturbance policy(o);
+  policy.judge(100.0, 4, false);
+  return policy;
+}
+
 }  // namespace
 
 // Two tests per update, alone and in the window: false alarms lie between the probability of one
@@ -84,10 +95,7 @@ TEST(Disturbance, StrangersAndInnovationsThatAreNoNumbersTrigger) {
 }
 
 TEST(Disturbance, EndsAfterQuietUpdatesInARow) {
-  DisturbanceOptions o = options();
-  o.hold = 3;
-  Disturbance policy(o);
-  policy.judge(100.0, 4, false);
+  Disturbance policy = disturbed();
   EXPECT_FALSE(policy.judge(4.0, 4, false));
   EXPECT_FALSE(policy.began());
   EXPECT_TRUE(policy.judge(12.0, 4, false));  // beyond release, below trigger: inflate again
@@ -98,13 +106,10 @@ TEST(Disturbance, EndsAfterQuietUpdatesInARow) {
 }
 
 TEST(Disturbance, NoEvidenceIsNotQuiet) {
-  DisturbanceOptions o = options();
-  o.hold = 3;
-  Disturbance policy(o);
-  policy.judge(100.0, 4, false);
-  for (int k = 0; k < o.hold; ++k) policy.judge(0.0, 0, false);
+  Disturbance policy = disturbed();
+  for (int k = 0; k < kHold; ++k) policy.judge(0.0, 0, false);
   EXPECT_TRUE(policy.lasts());
-  for (int k = 0; k < o.hold; ++k) {
+  for (int k = 0; k < kHold; ++k) {
     EXPECT_TRUE(policy.lasts());
     policy.judge(0.0, 0, false);  // between quiet ones it does not count
     policy.judge(4.0, 4, false);
@@ -114,11 +119,8 @@ TEST(Disturbance, NoEvidenceIsNotQuiet) {
 
 // A robot that has left its map behind has no evidence to wait for.
 TEST(Disturbance, EndsAfterALongTimeWithoutEvidence) {
-  DisturbanceOptions o = options();
-  o.hold = 3;
-  Disturbance policy(o);
-  policy.judge(100.0, 4, false);
-  for (int k = 1; k < Disturbance::kBlindHolds * o.hold; ++k) policy.judge(0.0, 0, false);
+  Disturbance policy = disturbed();
+  for (int k = 1; k < Disturbance::kBlindHolds * kHold; ++k) policy.judge(0.0, 0, false);
   EXPECT_TRUE(policy.lasts());
   policy.judge(0.0, 0, false);
   EXPECT_FALSE(policy.lasts());

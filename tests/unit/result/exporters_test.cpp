@@ -194,6 +194,20 @@ TEST(SimpleMapWriter, MemoryIsBoundedAndTheWholePathStaysCovered) {
   EXPECT_GT(last.x(), 800.0);
 }
 
+TEST(SimpleMapWriter, KeyPosesMoveToTheCorrectedPath) {
+  SimpleMapWriter writer;
+  for (int i = 0; i < 3; ++i)
+    writer.add({1.0 * i, 0, 0}, 0.1 * Eigen::Matrix3d::Identity(), frame_with(i), 10.0 + i);
+  writer.correct({{10, 11, 11.5}, {{5, 6, 0.1}, {7, 8, 0.2}, {9, 9, 9}}, {}});
+  const mrpt::maps::CSimpleMap map = writer.map();
+  const auto [cov, mean] = std::get<0>(map.get(1))->getCovarianceAndMean();
+  EXPECT_NEAR(mean.x(), 7.0, 1e-12);
+  EXPECT_NEAR(mean.y(), 8.0, 1e-12);
+  EXPECT_NEAR(mean.yaw(), 0.2, 1e-12);
+  EXPECT_NEAR(cov(0, 0), 0.1, 1e-12);
+  EXPECT_NEAR(std::get<0>(map.get(2))->getMeanVal().x(), 2.0, 1e-12);  // no such time
+}
+
 TEST(SimpleMapWriter, RefusesNonsense) {
   EXPECT_THROW(SimpleMapWriter({1.0, 0.35}, 1), std::invalid_argument);
   EXPECT_THROW(SimpleMapWriter({-1.0, 0.35}), std::invalid_argument);

@@ -5,7 +5,7 @@
 #include <mrpt/obs/CActionRobotMovement2D.h>
 
 #include <libslam/pipeline/factory.hpp>
-#include <libslam/simulation/planar_pose.hpp>
+#include <libslam/state/planar_pose.hpp>
 
 #include "drive_fixture.hpp"
 

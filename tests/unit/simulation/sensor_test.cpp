@@ -6,7 +6,7 @@
 #include <mrpt/obs/CObservationBeaconRanges.h>
 #include <mrpt/obs/CObservationStereoImagesFeatures.h>
 
-#include <libslam/simulation/planar_pose.hpp>
+#include <libslam/state/planar_pose.hpp>
 
 #include "drive_fixture.hpp"
 

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <mrpt/obs/CActionRobotMovement2D.h>
 
-#include <libslam/simulation/planar_pose.hpp>
+#include <libslam/state/planar_pose.hpp>
 
 #include "drive_fixture.hpp"
 

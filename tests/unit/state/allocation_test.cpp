@@ -85,10 +85,15 @@ TEST(Allocation, AStepWithAdaptationIsFreeOfItInSteadyState) {
         model.linearize(state, pose, landmarks[which], seen[i], measurements[i]);
         ekf.innovate(state, measurements[i]);
       }
-      if (!ekf.correct(state, pose, measurements).applied) return false;
-      ekf.look_back(measurements, postfits);
-      for (std::size_t i = 0; i < postfits.size(); ++i) postfits[i].feature = i;
-      noise.observe(seen, postfits);
+      for (bool again = true; again;) {
+        if (!ekf.weigh(state, measurements)) return false;
+        ekf.look_back(measurements, postfits);
+        for (std::size_t i = 0; i < postfits.size(); ++i) postfits[i].feature = i;
+        again = noise.observe(seen, postfits);
+        for (std::size_t i = 0; i < postfits.size(); ++i) measurements[i].cov = seen[i].cov;
+      }
+      ekf.solve(state);
+      ekf.apply(state, pose);
       process.observe(ekf.look_back(measurements, pose, state.size(pose)));
       return true;
     };

@@ -3,16 +3,16 @@
 // Degrees stand in parameters alone.
 
 #include <cmath>
+#include <numbers>
 
 #include <Eigen/Core>
 
-#include <libslam/config/parameters.hpp>
 #include <libslam/state/block.hpp>
 
 namespace libslam {
 
 inline double to_radians(double degrees) {
-  return degrees * (kPi / 180.0);
+  return degrees * (std::numbers::pi / 180.0);
 }
 
 /// A point of frame b in frame a.

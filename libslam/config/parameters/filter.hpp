@@ -4,6 +4,7 @@
 #include <string>
 
 #include <libslam/config/description.hpp>
+#include <libslam/config/parameters/loop_closure.hpp>
 
 namespace libslam {
 
@@ -37,6 +38,7 @@ struct FilterParameters {
   double initial_sigma_xy = 0.0;
   double initial_sigma_heading_deg = 0.0;
   BuildingPriorParameters building_prior;
+  LoopClosureParameters loop_closure;
   double delayed_pose_distance = 0.0;
   double delayed_pose_turn_deg = 30.0;
 
@@ -61,6 +63,7 @@ struct FilterParameters {
     v.value("initial_sigma_heading_deg", initial_sigma_heading_deg,
             {"deg", "Standard deviation of the start heading.", 0});
     v.section("building_prior", building_prior);
+    v.section("loop_closure", loop_closure);
     v.value("delayed_pose_distance", delayed_pose_distance,
             {"m",
              "A pose is kept in the state this far after the one before, so that later knowledge "

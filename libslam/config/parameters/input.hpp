@@ -4,6 +4,7 @@
 #include <string>
 
 #include <libslam/config/description.hpp>
+#include <libslam/config/parameters/scan_matching.hpp>
 
 namespace libslam {
 
@@ -14,6 +15,7 @@ struct InputParameters {
   std::string odometry_label = "";
   std::string sensor_label = "";
   double velocity_tolerance = 0.2;
+  ScanMatchingParameters scan_matching;
 
   void describe(auto& v) {
     v.value("policy", policy,
@@ -39,6 +41,7 @@ struct InputParameters {
              "Velocities or ticks of the log are used only if, over the first readings, they agree "
              "with its pose increments within this fraction.",
              0, 10});
+    v.section("scan_matching", scan_matching);
   }
 };
 

@@ -16,6 +16,7 @@ struct FrontendParameters {
   std::string source = "range_bearing";
   double min_range = 0.0;
   double max_range = 1e6;
+  std::string points_beside_lines = "none";
   ScanLinesParameters lines;
   StereoFrontendParameters stereo;
   FiducialParameters fiducials;
@@ -35,6 +36,13 @@ struct FrontendParameters {
     v.value("min_range", min_range,
             {"m", "Nearer observations are ignored; of stereo points by their depth.", 0});
     v.value("max_range", max_range, {"m", "Farther observations are ignored.", 0});
+    v.value("points_beside_lines", points_beside_lines,
+            {"",
+             "Points that scan_lines finds in a scan beside the lines: none, corners where two "
+             "lines meet, or trunks.",
+             0,
+             0,
+             {"none", "corners", "trunks"}});
     v.section("lines", lines);
     v.section("stereo", stereo);
     v.section("fiducials", fiducials);

@@ -102,7 +102,6 @@ ChartChange RightInvariantFrame::retract_planar(GaussianState& state, BlockId po
   const double turn = delta[first + 2];
   const PlanarExponential exponential(turn);
   const Eigen::Vector2d p = state.estimate(pose).head<2>();
-  const Eigen::Vector2d shift = delta.segment<2>(first) - rotated_90(p) * turn;  // xi_p
   auto u = cleared(state.dimension(), columns);
   for (const BlockId id : state.blocks()) {
     GaussianState::MutableBlock block = state.mutable_block(id);
@@ -114,11 +113,14 @@ ChartChange RightInvariantFrame::retract_planar(GaussianState& state, BlockId po
     auto& x = block.estimate;
     if (stays(block, delta)) continue;
     if (role == WorldRole::kLine) {
+      // By its own turn: a line that does not turn must not creep with the turn of the robot.
+      const double own_turn = delta[block.offset];
+      const Eigen::Vector2d shift = delta.segment<2>(first) - rotated_90(p) * own_turn;
       const Eigen::Vector2d before = direction(x[0]);
-      x[0] = wrap_angle(x[0] + delta[block.offset]);
+      x[0] = wrap_angle(x[0] + own_turn);
       const Eigen::Vector2d after = direction(x[0]);
       x[1] += delta[block.offset + 1] - before.dot(shift) +
-              after.dot(exponential(Eigen::Vector2d::Zero(), shift));
+              after.dot(PlanarExponential(own_turn)(Eigen::Vector2d::Zero(), shift));
       const Eigen::Vector2d change = after - before;
       u.row(block.offset + 1) << change.transpose(), -change.dot(rotated_90(p));
       continue;

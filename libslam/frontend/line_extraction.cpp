@@ -10,8 +10,15 @@ namespace {
 
 /// Noise may widen the distance of two neighbours on one surface by so many sigma.
 constexpr double kJumpSigmas = 3.0;
+/// No point of a wall is farther off than so many sigma of its range across the wall, and of the
+/// wall itself (floor_r).
+constexpr double kRangeSigmas = 4.0, kWallSigmas = 2.0;
+/// Beams that meet a wall at a smaller sine say little of where they meet it.
+constexpr double kGrazing = 0.05;
 /// A chord through two points fits anything.
 constexpr std::size_t kFewestPoints = 3;
+/// Lines that meet at a smaller angle [rad] have no corner that noise would not move by far.
+constexpr double kSharpestCorner = 0.3;
 
 Eigen::Vector2d left_of(const Eigen::Vector2d& v) {
   return {-v.y(), v.x()};
@@ -46,6 +53,7 @@ std::span<const ExtractedLine> LineExtraction::extract(std::span<const BeamPoint
     split(first, last);
     first = last;
   }
+  for (std::size_t i = 1; i < runs_.size(); ++i) part_at_corner(runs_[i - 1], runs_[i]);
   merge_across_gaps();
   for (std::size_t i = 0; i < merged_.size(); ++i) {
     const Line& line = merged_[i];
@@ -85,9 +93,17 @@ LineExtraction::Fit LineExtraction::fit(const Sums& s) {
   return fit;
 }
 
+/// Along a grazing beam noise moves a point along the wall, hardly off it.
+double LineExtraction::bound(const Eigen::Vector2d& n, const BeamPoint& point) const {
+  const double facing = std::abs(n.dot(point.p)) / point.range;
+  return std::min(parameters_.split_distance,
+                  kWallSigmas * parameters_.floor_r +
+                      kRangeSigmas * parameters_.sigma_range * facing);
+}
+
 bool LineExtraction::fits(const Fit& fit, std::size_t first, std::size_t last) const {
   for (std::size_t i = first; i < last; ++i)
-    if (std::abs(fit.n.dot(points_[i].p) - fit.r) > parameters_.split_distance) return false;
+    if (std::abs(fit.n.dot(points_[i].p) - fit.r) > bound(fit.n, points_[i])) return false;
   return true;
 }
 
@@ -113,11 +129,12 @@ void LineExtraction::split(std::size_t first, std::size_t last) {
 /// `first` if no point is farther from the chord than it may be.
 std::size_t LineExtraction::farthest_from_chord(std::size_t first, std::size_t last) const {
   std::size_t farthest = first;
-  double most = parameters_.split_distance;
+  double most = 1.0;
   const Eigen::Vector2d& from = points_[first].p;
   const Eigen::Vector2d across = left_of((points_[last - 1].p - from).normalized());
   for (std::size_t i = first + 1; i + 1 < last; ++i) {
-    const double distance = std::abs(across.dot(points_[i].p - from));
+    const double distance =
+        std::abs(across.dot(points_[i].p - from)) / bound(across, points_[i]);
     if (distance <= most) continue;
     most = distance;
     farthest = i;
@@ -137,6 +154,24 @@ void LineExtraction::add_run(std::size_t first, std::size_t last) {
     }
   }
   runs_.push_back({first, last, sums_[last] - sums_[first], runs_.size()});
+}
+
+/// A split leaves points of the other wall, up to split_distance off, at the end of a run; they would
+/// turn its line always the same way. The bearing of where both lines meet is known better.
+void LineExtraction::part_at_corner(Run& before, Run& after) const {
+  if (after.first + 1 != before.last) return;
+  for (int pass = 0; pass < 2; ++pass) {
+    const Fit a = fit(before.sums), b = fit(after.sums);
+    const double cross = a.n.x() * b.n.y() - a.n.y() * b.n.x();
+    if (std::abs(cross) < std::sin(kSharpestCorner)) return;
+    const Eigen::Vector2d corner(a.r * b.n.y() - b.r * a.n.y(), b.r * a.n.x() - a.r * b.n.x());
+    const double bearing = std::atan2(corner.y() / cross, corner.x() / cross);
+    std::size_t first = before.first + kFewestPoints;
+    const std::size_t end = after.last - kFewestPoints;
+    while (first < end && points_[first].bearing < bearing) ++first;
+    before = {before.first, first, sums_[first] - sums_[before.first], before.line};
+    after = {first, after.last, sums_[after.last] - sums_[first], after.line};
+  }
 }
 
 double LineExtraction::spacing(const BeamPoint& point, const Fit& fit) const {
@@ -180,9 +215,37 @@ bool LineExtraction::merge(std::size_t into, std::size_t other) {
   return true;
 }
 
+/// A range that is too long moves a point off the wall and along it at once: the farther end of a
+/// short segment would always tilt outwards. Regression on where the beams meet the wall does not
+/// see that (an instrumental variable).
+LineExtraction::Fit LineExtraction::without_tilt(std::size_t index) const {
+  Fit fit = merged_[index].fit;
+  const Eigen::Vector2d along = left_of(fit.n);
+  double all_met = 0.0, all_places = 0.0, with_place = 0.0, with_error = 0.0;
+  for (const Run& run : runs_) {
+    if (run.line != index) continue;
+    for (std::size_t i = run.first; i < run.last; ++i) {
+      const BeamPoint& point = points_[i];
+      const double facing = fit.n.dot(point.p), place = along.dot(point.p);
+      if (facing < kGrazing * point.range) return fit;
+      const double met = fit.r * place / facing;
+      all_met += met;
+      all_places += place;
+      with_place += met * place;
+      with_error += met * (facing - fit.r);
+    }
+  }
+  const double slope =
+      with_error / (with_place - all_met * all_places / merged_[index].sums.n);
+  fit.alpha = std::remainder(fit.alpha - slope, 2.0 * kPi);
+  fit.n = {std::cos(fit.alpha), std::sin(fit.alpha)};
+  fit.r = fit.n.dot(fit.centre);
+  return fit;
+}
+
 ExtractedLine LineExtraction::finish(std::size_t index) const {
   const Line& line = merged_[index];
-  const Fit& fit = line.fit;
+  const Fit fit = without_tilt(index);
   const Eigen::Vector2d along = left_of(fit.n);
   double ss = 0.0, alpha = 0.0, r = 0.0, both = 0.0;
   for (const Run& run : runs_) {

@@ -1,7 +1,8 @@
 #pragma once
 // Straight lines in a row of points that a laser scanner saw in the order of their bearings.
 //
-//   break at jumps -> split at the farthest point from the chord -> fit -> merge -> choose
+//   break at jumps -> split at the farthest point from the chord -> fit -> part where two lines meet
+//   -> merge -> choose
 //
 // A line n(alpha)^T p = r is fitted by weighted total least squares, (S2.9) and (S2.10) in the
 // Cartesian form: with the centred scatter S of the points, weights w_j = 1 / sigma^2,
@@ -81,7 +82,11 @@ class LineExtraction {
   bool breaks(const BeamPoint& before, const BeamPoint& after) const;
   void split(std::size_t first, std::size_t last);
   std::size_t farthest_from_chord(std::size_t first, std::size_t last) const;
+  /// How far a point of a line with the normal `n` may be off it [m]; split_distance at most.
+  double bound(const Eigen::Vector2d& n, const BeamPoint& point) const;
   void add_run(std::size_t first, std::size_t last);
+  /// Runs that share a corner are parted where their lines meet.
+  void part_at_corner(Run& before, Run& after) const;
   bool fits(const Fit& fit, std::size_t first, std::size_t last) const;
   bool fits(const Fit& fit, std::size_t line) const;
   /// How far apart the ends of two beams may lie where a surface ends [m].
@@ -89,6 +94,7 @@ class LineExtraction {
   void include(Line& line, const Run& run) const;
   void merge_across_gaps();
   bool merge(std::size_t into, std::size_t other);
+  Fit without_tilt(std::size_t line) const;
   ExtractedLine finish(std::size_t line) const;
 
   ScanLinesParameters parameters_;

@@ -70,7 +70,7 @@ class AssociationScene {
   }
 
   PairTest test() {
-    return PairTest({state_, pose_, ekf_, linearizer_, model_, registry, selected_}, features);
+    return PairTest({state_, pose_, ekf_, linearizer_, model_, registry, selected_, 0.0}, features);
   }
   /// Innovations of all landmarks as MRPT wants them: predictions and their joint covariance, of
   /// the observation noise too.

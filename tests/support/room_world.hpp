@@ -20,10 +20,12 @@ struct Wall {
 };
 
 struct RoomWorld {
-  /// A polygon with oblique walls, a block inside it, and the far walls of a corridor.
+  static constexpr double kNearest = 0.2;  ///< distance from which a wall is seen [m]
+  /// A polygon with oblique walls, a block inside it, and the far walls of a corridor. A wall is
+  /// seen from the left of its way, `from` to `to`, alone.
   std::vector<Wall> walls{{{-6, -5}, {7, -5}}, {{7, -5}, {7, 4}},     {{7, 4}, {1, 8}},
                           {{1, 8}, {-6, 6}},   {{-6, 6}, {-6, -5}},   {{-1, 0.5}, {-1, 1.5}},
-                          {{-1, 1.5}, {1, 2}}, {{40, -20}, {40, 30}}, {{-20, 35}, {30, 33}}};
+                          {{-1, 1.5}, {1, 2}}, {{40, -20}, {40, 30}}, {{30, 33}, {-20, 35}}};
   Eigen::Vector3d T_robot_sensor = Eigen::Vector3d(0.3, -0.2, 0.4);
   Eigen::Vector3d pose = Eigen::Vector3d(2, -2, 0.1);  ///< true pose
   double sigma_alpha = 0.01, sigma_r = 0.03;
@@ -33,12 +35,16 @@ struct RoomWorld {
     return pose.head<2>() + Eigen::Rotation2Dd(pose[2]) * Eigen::Vector2d(T_robot_sensor.head<2>());
   }
 
+  void move(const Eigen::Vector3d& increment) {
+    pose.head<2>() += Eigen::Rotation2Dd(pose[2]) * Eigen::Vector2d(increment.head<2>());
+    pose[2] = wrap_angle(pose[2] + increment[2]);
+  }
+
   /// Drives one step and returns what the odometry says; noise scaled by `noise`.
   MotionAction drive(std::mt19937_64& random, double noise) {
     std::normal_distribution<double> normal;
     const Eigen::Vector3d increment(0.3, 0.0, 0.06);
-    pose.head<2>() += Eigen::Rotation2Dd(pose[2]) * Eigen::Vector2d(increment.head<2>());
-    pose[2] = wrap_angle(pose[2] + increment[2]);
+    move(increment);
     MotionAction action;
     action.dt = 0.1;
     action.increment = increment + noise * Eigen::Vector3d(sigma_forward * normal(random), 0.0,
@@ -58,8 +64,8 @@ struct RoomWorld {
       const Eigen::Vector2d from = R_sensor_world * (walls[i].from - sensor_position());
       const Eigen::Vector2d to = R_sensor_world * (walls[i].to - sensor_position());
       const Eigen::Vector2d along = (to - from).normalized();
-      Eigen::Vector2d n(along.y(), -along.x());
-      if (n.dot(from) < 0.0) n = -n;
+      const Eigen::Vector2d n(along.y(), -along.x());
+      if (n.dot(from) < kNearest) continue;
       const Eigen::Vector2d left(-n.y(), n.x());
       Feature& feature = features.emplace_back();
       feature.id = static_cast<std::int64_t>(i);

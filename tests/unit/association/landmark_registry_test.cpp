@@ -76,3 +76,54 @@ TEST(LandmarkRegistry, ClearsToAnEmptyMapThatGoesOnNumbering) {
   registry.add(BlockId{2}, kNoIdentity);
   EXPECT_EQ(registry.landmarks()[0].id, 6);
 }
+
+TEST(LandmarkRegistry, TheExtentGrowsAndAnEndThatMovesTakesItsUncertaintyAlong) {
+  LandmarkRegistry registry(1, 0);
+  registry.add(BlockId{1}, 3, nullptr, Extent{0.0, 2.0, 0.1, 0.2});
+  registry.record_sighting(0, nullptr, Extent{-1.0, 1.5, 0.3, 0.4});
+  registry.record_sighting(0);
+  const Extent extent = *registry.landmarks()[0].extent;
+  EXPECT_EQ(extent.begin, -1.0);
+  EXPECT_EQ(extent.sigma_begin, 0.3);
+  EXPECT_EQ(extent.end, 2.0);
+  EXPECT_EQ(extent.sigma_end, 0.2);
+  registry.add(BlockId{2}, 4);
+  registry.record_sighting(1, nullptr, Extent{5.0, 6.0, 0.1, 0.1});
+  EXPECT_EQ(registry.landmarks()[1].extent->begin, 5.0);
+}
+
+TEST(LandmarkRegistry, AMergedLandmarkInheritsTheSightings) {
+  LandmarkRegistry registry(3, 0);
+  registry.add(BlockId{1}, 3, nullptr, Extent{0.0, 2.0, 0.1, 0.2});
+  registry.record_update();
+  registry.record_sighting(0);
+  registry.add(BlockId{2}, 4, nullptr, Extent{7.0, 8.0, 0.1, 0.2});
+  registry.mark_prior_judged(1);
+  registry.add(BlockId{3}, 5);
+  registry.record_update();
+  ASSERT_FALSE(registry.landmarks()[0].confirmed);
+  EXPECT_EQ(registry.merge(0, 1, Extent{1.0, 3.0, 0.3, 0.4}), BlockId{2});
+  ASSERT_EQ(registry.size(), 2u);
+  const RegisteredLandmark& kept = registry.landmarks()[0];
+  EXPECT_EQ(kept.block, BlockId{1});
+  EXPECT_EQ(kept.times_seen, 3);
+  EXPECT_EQ(kept.updates, 2);
+  EXPECT_EQ(kept.unseen, 1);
+  EXPECT_TRUE(kept.confirmed);
+  EXPECT_TRUE(kept.prior_judged);
+  EXPECT_EQ(kept.extent->end, 3.0);
+  EXPECT_EQ(kept.extent->sigma_end, 0.4);
+  EXPECT_FALSE(registry.find(4).has_value());
+  EXPECT_EQ(*registry.find(5), 1u);
+}
+
+TEST(LandmarkRegistry, MergingIntoALaterOneKeepsItsPlaceInOrder) {
+  LandmarkRegistry registry(1, 0);
+  registry.add(BlockId{1}, 3);
+  registry.add(BlockId{2}, 4);
+  registry.record_sighting(1);
+  EXPECT_EQ(registry.merge(1, 0, std::nullopt), BlockId{1});
+  ASSERT_EQ(registry.size(), 1u);
+  EXPECT_EQ(registry.landmarks()[0].id, 4);
+  EXPECT_EQ(registry.landmarks()[0].times_seen, 3);
+}

@@ -149,6 +149,73 @@ TEST(LineExtraction, LeavesOutWhatIsTooShortOrHasTooFewPoints) {
   EXPECT_TRUE(extraction.extract({}, kStep).empty());
 }
 
+/// Two walls that meet at a right angle at (3, -3), seen through noise of 3 cm.
+ScanLinesParameters noisy() {
+  ScanLinesParameters parameters = without_floor();
+  parameters.sigma_range = 0.03;
+  parameters.split_distance = 0.15;
+  return parameters;
+}
+
+struct Biases {
+  double alpha = 0.0, r = 0.0;  // mean errors in sigma of one scan
+  double nees = 0.0;
+};
+
+/// Of the line with the normal nearest to `wall`, over many scans.
+Biases biases_of(const Wall& wall, const std::vector<Wall>& walls, int scans) {
+  LineExtraction extraction(noisy());
+  Biases biases;
+  for (int i = 0; i < scans; ++i) {
+    const auto points = scan_of(walls, 0.03, static_cast<unsigned>(i));
+    const ExtractedLine* nearest = nullptr;
+    for (const ExtractedLine& line : extraction.extract(points, kStep))
+      if (nearest == nullptr ||
+          std::abs(line.alpha - wall.alpha) < std::abs(nearest->alpha - wall.alpha))
+        nearest = &line;
+    if (nearest == nullptr) continue;
+    const Eigen::Vector2d error(nearest->alpha - wall.alpha, nearest->r - wall.r);
+    biases.alpha += error[0] / std::sqrt(nearest->cov(0, 0)) / scans;
+    biases.r += error[1] / std::sqrt(nearest->cov(1, 1)) / scans;
+    biases.nees += error.dot(nearest->cov.llt().solve(error)) / scans;
+  }
+  return biases;
+}
+
+// Points of the other wall at the end of a run are off by less than noise may be, always to the
+// same side. Means of 2000 scans scatter by 1 / sqrt(2000) sigma; without the cut at the corner
+// they are half a sigma off.
+TEST(LineExtraction, ACornerDoesNotBendItsWalls) {
+  const std::vector<Wall> walls = {{0.0, 3.0, -3.0, 4.0}, {-0.5 * kPi, 3.0, -1.0, 3.0}};
+  for (const Wall& wall : walls) {
+    const Biases biases = biases_of(wall, walls, 2000);
+    EXPECT_LT(std::abs(biases.alpha), 0.15);
+    EXPECT_LT(std::abs(biases.r), 0.15);
+    EXPECT_LT(biases.nees, 2.4);  // ideal 2
+  }
+}
+
+// The farther end of a short segment: noise of the range moves a point off and along the wall.
+TEST(LineExtraction, AShortWallFarToTheSideIsNotTilted) {
+  const Wall wall{0.3, 2.0, 3.0, 4.5};
+  const Biases biases = biases_of(wall, {wall}, 2000);
+  EXPECT_LT(std::abs(biases.alpha), 0.1);
+  EXPECT_LT(std::abs(biases.r), 0.1);
+}
+
+// A piece of wall that goes off to the side by less than split_distance, at grazing beams.
+TEST(LineExtraction, GrazingBeamsTellALowStepFromNoise) {
+  const std::vector<Wall> walls = {{-0.5 * kPi, 0.5, 0.0, 3.0}, {0.0, 3.0, -0.5, -0.25}};
+  LineExtraction extraction(noisy());
+  int wrong = 0;
+  for (unsigned seed = 0; seed < 50; ++seed) {
+    const auto points = scan_of(walls, 0.03, seed);
+    for (const ExtractedLine& line : extraction.extract(points, 0.25 * kStep))
+      wrong += std::abs(line.alpha + 0.5 * kPi) > 5.0 * std::sqrt(line.cov(0, 0));
+  }
+  EXPECT_LE(wrong, 2);
+}
+
 TEST(LineExtraction, PointsWithoutAWallAreNoLines) {
   std::mt19937_64 random(9);
   std::uniform_real_distribution<double> range(1.0, 10.0);

@@ -1,5 +1,6 @@
 // Saved maps in files: the same bits back, and no file that is believed without a check.
 
+#include <cmath>
 #include <cstring>
 #include <random>
 #include <sstream>
@@ -48,6 +49,19 @@ SavedMap full_map(int dimension) {
   map.landmarks[4].appearance = std::make_shared<Descriptor>(descriptor);
   map.cov = random_covariance(static_cast<int>(map.tangent()), random);
   map.cov = 0.5 * (map.cov + map.cov.transpose()).eval();
+  return map;
+}
+
+/// Five lines, one without an extent, one that the building prior has judged.
+SavedMap line_map() {
+  SavedMap map = full_map(2);
+  for (SavedLandmark& line : map.landmarks) {
+    line.type = "line";
+    line.appearance = nullptr;
+    line.extent = Extent{-1.0 / 3.0 - static_cast<double>(line.times_seen), 2.5, 0.01, 1e-300};
+  }
+  map.landmarks[1].extent.reset();
+  map.landmarks[2].prior_judged = true;
   return map;
 }
 
@@ -173,4 +187,32 @@ TEST(MapFile, ReadsSurveyedLandmarks) {
   EXPECT_EQ(map.pose.size(), 0);
   EXPECT_THROW(read_map_file(scratch.write("mixed.csv", "1,2,3\n2,3,4,5\n"), 0.0), InputError);
   EXPECT_THROW(read_map_file(scratch.write("twice.csv", "1,2,3\n1,3,4\n"), 0.0), InputError);
+}
+
+TEST(MapFile, LinesKeepTheirExtents) {
+  const SavedMap map = line_map();
+  const std::string bytes = encode_map(map);
+  const SavedMap back = decode_map(bytes, "the.slammap");
+  EXPECT_EQ(encode_map(back), bytes);
+  ASSERT_EQ(back.landmarks.size(), map.landmarks.size());
+  for (std::size_t i = 0; i < map.landmarks.size(); ++i) {
+    const SavedLandmark &a = map.landmarks[i], &b = back.landmarks[i];
+    EXPECT_EQ(b.type, "line");
+    EXPECT_EQ(b.prior_judged, a.prior_judged);
+    ASSERT_EQ(b.extent.has_value(), a.extent.has_value());
+    if (!a.extent) continue;
+    EXPECT_EQ(b.extent->begin, a.extent->begin);
+    EXPECT_EQ(b.extent->end, a.extent->end);
+    EXPECT_EQ(b.extent->sigma_begin, a.extent->sigma_begin);
+    EXPECT_EQ(b.extent->sigma_end, a.extent->sigma_end);
+  }
+}
+
+TEST(MapFile, RefusesExtentsThatCannotBe) {
+  for (const Extent& wrong : {Extent{1.0, 0.0, 0.1, 0.1}, Extent{0.0, 1.0, -0.1, 0.1},
+                              Extent{0.0, std::nan(""), 0.1, 0.1}}) {
+    SavedMap map = line_map();
+    map.landmarks[0].extent = wrong;
+    EXPECT_THROW(encode_map(map), std::invalid_argument);
+  }
 }

@@ -35,6 +35,35 @@ LandmarkMap read(const std::string& text) {
   return read_landmark_map(in, "map.csv");
 }
 
+TEST(LandmarkMap, ExtentsOfLinesAreColumnsOfTheirOwn) {
+  std::mt19937 generator(2);
+  LandmarkMap map;
+  map.add(make_landmark(4, 2, generator));
+  EXPECT_EQ(text_of(map).find("begin"), std::string::npos);  // points alone: as ever
+  LandmarkEstimate line = make_landmark(5, 2, generator, "line");
+  line.extent = Extent{-1.0 / 3.0, 2.5, 0.01, 1e-300};
+  map.add(line);
+  const std::string text = text_of(map);
+  EXPECT_NE(text.find(",times_seen,begin,end,sigma_begin,sigma_end\n"), std::string::npos);
+  const LandmarkMap back = read(text);
+  ASSERT_EQ(back.size(), 2u);
+  EXPECT_FALSE(back.landmarks()[0].extent);
+  ASSERT_TRUE(back.landmarks()[1].extent);
+  EXPECT_EQ(back.landmarks()[1].extent->begin, line.extent->begin);
+  EXPECT_EQ(back.landmarks()[1].extent->end, line.extent->end);
+  EXPECT_EQ(back.landmarks()[1].extent->sigma_begin, line.extent->sigma_begin);
+  EXPECT_EQ(back.landmarks()[1].extent->sigma_end, line.extent->sigma_end);
+  EXPECT_EQ(text_of(back), text);
+}
+
+TEST(LandmarkMap, RefusesAnExtentThatEndsBeforeItBegins) {
+  const std::string head =
+      "id,type,mean_1,mean_2,cov_11,cov_12,cov_22,times_seen,begin,end,sigma_begin,sigma_end\n";
+  EXPECT_NO_THROW(read(head + "1,line,0,2,1,0,1,3,1,2,0.1,0.1\n"));
+  EXPECT_THROW(read(head + "1,line,0,2,1,0,1,3,2,1,0.1,0.1\n"), std::invalid_argument);
+  EXPECT_THROW(read(head + "1,line,0,2,1,0,1,3\n"), std::invalid_argument);
+}
+
 TEST(LandmarkMap, ReadsBackBitForBitAlsoWithMixedDimensions) {
   std::mt19937 generator(1);
   LandmarkMap map;

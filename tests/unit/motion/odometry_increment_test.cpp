@@ -17,6 +17,16 @@ MotionParameters parameters(const std::string& form) {
   return motion;
 }
 
+CalibrationParameters calibrated() {
+  CalibrationParameters calibration;
+  calibration.scale_speed.enabled = calibration.scale_turn.enabled = true;
+  calibration.bias_turn.enabled = true;
+  return calibration;
+}
+
+/// scale_speed, scale_turn, bias_turn [rad/m].
+const Eigen::Vector3d kNeutral(1.0, 1.0, 0.0), kTrue(1.04, 0.97, -0.06), kBiased(1.0, 1.0, -0.06);
+
 Eigen::Matrix3d some_covariance() {
   Eigen::Matrix3d a;
   a << 2e-3, 1e-3, -4e-4, 0, 1e-3, 5e-4, 0, 0, 3e-3;
@@ -56,6 +66,66 @@ TEST(OdometryIncrement, JacobiansByRegime) {
   }
 }
 
+TEST(OdometryIncrement, CalibrationJacobiansByRegime) {
+  for (const char* form : {"composition", "arc"}) {
+    const OdometryIncrement model(parameters(form), calibrated());
+    ASSERT_EQ(model.calibration().size(), 3u);
+    for (const auto& pose : poses_by_regime())
+      for (const auto& increment : increments_by_regime())
+        for (const Eigen::Vector3d& values : {kNeutral, kTrue, Eigen::Vector3d(1.0, 1.0, 1e-8)})
+          expect_jacobians(model, pose, values, action_of(increment));
+  }
+}
+
+TEST(OdometryIncrement, NeutralCalibrationIsThePlainModel) {
+  for (const char* form : {"composition", "arc"}) {
+    const OdometryIncrement model(parameters(form), calibrated()), plain(parameters(form), {});
+    for (const auto& pose : poses_by_regime())
+      for (const auto& increment : increments_by_regime()) {
+        const MotionAction action = action_of(increment);
+        const MotionStep a = MotionState(model, pose, kNeutral).step(model, action);
+        const MotionStep b = MotionState(plain, pose, {}).step(plain, action);
+        EXPECT_LT(boxminus(kPoseSpec, a.estimate, b.estimate).norm(), 1e-14);
+        EXPECT_LT((a.cov_noise - b.cov_noise).norm(), 1e-18);
+      }
+  }
+}
+
+// The true wheels and track by which the odometry is wrong, driven through in fine steps.
+TEST(OdometryIncrement, CalibrationUndoesWheelsAndATrackThatAreWrong) {
+  constexpr double kTrack = 0.4, kTrueTrack = 0.42, kLeft = 1.03, kRight = 0.98;
+  const OdometryIncrement model(parameters("composition"), calibrated());
+  // The robot turns by (R r - L l) / b where the odometry says (r - l) / b0, r and l the paths of
+  // the wheels: with ds = (r + l) / 2 and dphi, r = ds + b0 dphi / 2, l = ds - b0 dphi / 2. Likewise
+  // its path is (R r + L l) / 2, which has a term in dphi: the model has none, so it turns little.
+  const double mean = 0.5 * (kLeft + kRight), apart = kRight - kLeft;
+  const Eigen::Vector3d values(mean, mean * kTrack / kTrueTrack, apart / kTrueTrack);
+  for (const double turn : {0.0, 0.02, -0.3}) {
+    const double length = 0.5, left = length - 0.5 * kTrack * turn,
+                 right = length + 0.5 * kTrack * turn;
+    const double true_turn = (kRight * right - kLeft * left) / kTrueTrack;
+    const double true_length = 0.5 * (kRight * right + kLeft * left);
+    const Eigen::Vector3d truth = integrate({1, 2, 3}, 1.0, 100, [&](const Eigen::Vector3d& p) {
+      return Eigen::Vector3d(true_length * std::cos(p[2]), true_length * std::sin(p[2]), true_turn);
+    });
+    const MotionAction action = action_of_twist(length, turn, 1.0);
+    const Eigen::Vector3d moved = move(model, {1, 2, 3}, values, action);
+    EXPECT_NEAR(wrap_angle(moved[2] - truth[2]), 0.0, 1e-9);
+    const double missing = std::abs(0.25 * apart * kTrack * turn);
+    EXPECT_LT((moved - truth).head<2>().norm(), missing + 1e-9);
+  }
+}
+
+TEST(OdometryIncrement, ABiasTurnsOnTheRoadAlone) {
+  const OdometryIncrement model(parameters("composition"), calibrated());
+  const Eigen::Vector3d standing = move(model, {1, 2, 0.5}, kTrue, action_of({0, 0, 0}));
+  EXPECT_LT((standing - Eigen::Vector3d(1, 2, 0.5)).norm(), 1e-15);
+  const Eigen::Vector3d ahead = move(model, {0, 0, 0}, kBiased, action_of({2, 0, 0}));
+  EXPECT_NEAR(ahead[2], -0.12, 1e-12);
+  const Eigen::Vector3d back = move(model, {0, 0, 0}, kBiased, action_of({-2, 0, 0}));
+  EXPECT_NEAR(back[2], 0.12, 1e-12);
+}
+
 TEST(OdometryIncrement, SamplesFollowTheLinearization) {
   for (const char* form : {"composition", "arc"}) {
     const OdometryIncrement model(parameters(form), {});
@@ -66,6 +136,8 @@ TEST(OdometryIncrement, SamplesFollowTheLinearization) {
     action.cov_increment->col(1).setZero();  // singular: no sideways noise
     action.cov_increment->row(1).setZero();
     expect_moments(model, {1.0, 2.0, 3.0}, Eigen::VectorXd(), action, 3);
+    const OdometryIncrement of_wheels(parameters(form), calibrated());
+    expect_moments(of_wheels, {1.0, 2.0, 3.0}, kTrue, action_of({0.5, 0.1, 0.4}), 4);
   }
 }
 

@@ -2,13 +2,18 @@
 // use.
 
 #include <atomic>
+#include <cmath>
 #include <cstdlib>
 #include <random>
 #include <vector>
 
 #include <gtest/gtest.h>
 
+#include <libslam/association/sequential_compatibility.hpp>
 #include <libslam/filter/ekf.hpp>
+#include <libslam/filter/pair_test.hpp>
+#include <libslam/frontend/line_extraction.hpp>
+#include <libslam/measurement/line.hpp>
 #include <libslam/measurement/range_bearing.hpp>
 #include <libslam/policy/process_scale.hpp>
 #include <libslam/policy/sage_husa.hpp>
@@ -108,5 +113,74 @@ TEST(Allocation, AStepWithAdaptationIsFreeOfItInSteadyState) {
     state.reserve(4 * state.dimension());
     EXPECT_GT(g_allocations.load(), after);
   }
+#endif
+}
+
+// Four walls of a room around a robot that turns: extraction, association and correction.
+TEST(Allocation, AStepWithLinesIsFreeOfItInSteadyState) {
+#if !LIBSLAM_COUNTS_MALLOC
+  GTEST_SKIP() << "sanitizers own malloc";
+#else
+  constexpr double kStep = 0.01;
+  GaussianState state;
+  const BlockId pose = state.add({"pose", Chart::kSE2, 3, WorldRole::kPose},
+                                 Eigen::Vector3d::Zero(), 1e-4 * Eigen::Matrix3d::Identity());
+  const LineMeasurement model;
+  LineExtraction extraction({});
+  SequentialCompatibility associator(9.2, 25.0);
+  Ekf ekf(make_error_frame("right_invariant"));
+  Linearizer linearizer(nullptr);
+  LandmarkRegistry registry(1, 0);
+  SelectedPairs selected;
+  std::vector<BeamPoint> points;
+  std::vector<Feature> features;
+  std::vector<Verdict> verdicts;
+  std::vector<LinearizedMeasurement> measurements(4);
+  const auto look = [&](double heading) {
+    points.clear();
+    for (double bearing = -3.1; bearing < 3.1; bearing += kStep) {
+      const double angle = bearing + heading;
+      const double range = 5.0 / std::max(std::abs(std::cos(angle)), std::abs(std::sin(angle)));
+      points.push_back({range, bearing, {range * std::cos(bearing), range * std::sin(bearing)}});
+    }
+    features.clear();
+    for (const ExtractedLine& line : extraction.extract(points, kStep)) {
+      if (line.extent.length() < 3.0) continue;  // the wall behind is cut in two
+      Feature& feature = features.emplace_back();
+      feature.z = Eigen::Vector2d(line.alpha, line.r);
+      feature.cov = line.cov;
+      feature.extent = line.extent;
+    }
+  };
+  features.reserve(8);
+  look(0.0);
+  for (const Feature& feature : features) {
+    Initialization initialization;
+    model.initialize(state, pose, feature, initialization);
+    const BlockId block = state.augment(model.landmark_spec(), initialization);
+    registry.add(block, kNoIdentity, nullptr, model.sighted_part(state, pose, block, feature));
+  }
+  ASSERT_GE(registry.size(), 3u);
+  const auto step = [&](double heading) {
+    look(heading);
+    PairTest test({state, pose, ekf, linearizer, model, registry, selected, 0.6}, features);
+    associator.associate(features, registry, test, verdicts);
+    std::size_t paired = 0;
+    for (std::size_t i = 0; i < features.size(); ++i) {
+      if (verdicts[i].outcome != Outcome::kPaired) continue;
+      const BlockId block = registry.landmarks()[verdicts[i].landmark].block;
+      model.linearize(state, pose, block, features[i], measurements[paired++]);
+      registry.record_sighting(verdicts[i].landmark, nullptr,
+                               model.sighted_part(state, pose, block, features[i]));
+    }
+    return paired > 0 &&
+           ekf.correct(state, pose, std::span(measurements).first(paired)).applied;
+  };
+  for (const double heading : {0.03, -0.03, 0.0}) ASSERT_TRUE(step(heading));
+  const long before = g_allocations.load();
+  bool applied = true;
+  for (int k = 0; k < 50; ++k) applied = step(0.03 * std::sin(0.3 * k)) && applied;
+  EXPECT_EQ(g_allocations.load() - before, 0);
+  EXPECT_TRUE(applied);
 #endif
 }

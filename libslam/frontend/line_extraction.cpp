@@ -169,6 +169,9 @@ void LineExtraction::part_at_corner(Run& before, Run& after) const {
     std::size_t first = before.first + kFewestPoints;
     const std::size_t end = after.last - kFewestPoints;
     while (first < end && points_[first].bearing < bearing) ++first;
+    const bool moved_fit = fits(a, std::min(before.last, first), first) &&
+                           fits(b, first, std::max(after.first, first));
+    if (!moved_fit) return;  // no corner of two walls
     before = {before.first, first, sums_[first] - sums_[before.first], before.line};
     after = {first, after.last, sums_[after.last] - sums_[first], after.line};
   }

@@ -166,8 +166,9 @@ TEST(LineErrorFrame, ALineWithoutCorrectionStaysBitForBit) {
   RightInvariantFrame frame;
   const ChartChange change = frame.retract(world.state, world.pose, delta);
   for (const BlockId block : world.state.blocks())
-    if (world.state.spec(block).role == WorldRole::kLine)
+    if (world.state.spec(block).role == WorldRole::kLine) {
       EXPECT_EQ(world.state.estimate(block), before.state.estimate(block));
+    }
   EXPECT_TRUE(change.u.bottomRows(2 * kLines).isZero(0.0));
 }
 

@@ -100,14 +100,13 @@ TEST(LandmarkMerging, WallsBesideEachOtherStayTwo) {
 // Far from the origin a small turn moves r by much: what counts is how far apart they are where
 // both were seen.
 TEST(LandmarkMerging, LinesAreComparedWhereTheyWereSeen) {
-  constexpr double kPlace = 100.0;
-  const auto through = [](double alpha, double kicks) {
-    const Eigen::Vector2d n(std::cos(alpha), std::sin(alpha)), p(5.0 + kicks, kPlace);
-    return n.dot(p);
+  static constexpr double kPlace = 100.0;
+  const auto through = [](double alpha) {  // r of a line through (5, kPlace)
+    return 5.0 * std::cos(alpha) + kPlace * std::sin(alpha);
   };
   Map same, other;
-  same.add(0.0, through(0.0, 0.0), {kPlace - 1, kPlace + 1, 0.1, 0.1});
-  same.add(0.02, through(0.02, 0.0), {kPlace - 1, kPlace + 1, 0.1, 0.1});
+  same.add(0.0, through(0.0), {kPlace - 1, kPlace + 1, 0.1, 0.1});
+  same.add(0.02, through(0.02), {kPlace - 1, kPlace + 1, 0.1, 0.1});
   EXPECT_EQ(same.merge(), 1);
   other.add(0.0, 5.0, {kPlace - 1, kPlace + 1, 0.1, 0.1});
   other.add(0.02, 5.0, {kPlace - 1, kPlace + 1, 0.1, 0.1});  // 2 m beside it there

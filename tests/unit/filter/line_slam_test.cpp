@@ -83,7 +83,7 @@ TEST(LineSlam, NoiselessRunsReachZeroError) {
 }
 
 // What the filter is told is tiny noise on an odometry that is wrong by its calibration alone; the
-// prior, a thousand times as wide, gives way.
+// prior, ten thousand times as wide, gives way. Linearizing the first steps, 2 cm off, leaves 4e-5.
 TEST(LineSlam, CalibrationOfANoiselessRunReachesTheTruth) {
   constexpr double kSpeed = 1.04, kTurn = 0.97, kBias = -0.06;
   CalibrationParameters calibration;
@@ -110,9 +110,9 @@ TEST(LineSlam, CalibrationOfANoiselessRunReachesTheTruth) {
       filter.update(world.observe(random, 0.0));
     }
     const Error error = error_of(filter, world);
-    EXPECT_LT(error.position, 1e-5) << frame;
-    EXPECT_LT(error.heading, 1e-5) << frame;
-    EXPECT_LT(error.map, 1e-5) << frame;
+    EXPECT_LT(error.position, 1e-4) << frame;
+    EXPECT_LT(error.heading, 1e-4) << frame;
+    EXPECT_LT(error.map, 1e-4) << frame;
     const double truth[] = {kSpeed, kTurn, kBias};
     const std::vector<CalibrationValue> found = filter.calibration();
     ASSERT_EQ(found.size(), 3u);

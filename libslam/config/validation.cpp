@@ -26,6 +26,7 @@ std::vector<Conflict> find_conflicts(const Parameters& parameters, TruthAccess t
   check_frontend(parameters, conflicts);
   check_displacement(parameters, conflicts);
   check_spatial(parameters, conflicts);
+  check_lines(parameters, conflicts);
   check_images(parameters, conflicts);
   check_association(parameters, conflicts);
   check_filter(parameters, truth, conflicts);

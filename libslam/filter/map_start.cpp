@@ -12,7 +12,11 @@ namespace {
 using Eigen::Index;
 
 constexpr Index kOutside = -1;
-constexpr const char* kPoint = "point";
+
+/// What a map calls such a landmark.
+const char* type_of(const BlockSpec& landmark) {
+  return landmark.role == WorldRole::kLine ? "line" : "point";
+}
 
 [[noreturn]] void reject(const std::string& what) {
   throw std::invalid_argument("the map does not fit the configuration: " + what);
@@ -33,8 +37,9 @@ void require_fit(const MapStart& start, const MappedParts& parts) {
     reject("its landmarks have " + std::to_string(map.dimension) +
            " coordinates, those of the measurement model " + std::to_string(dimension));
   for (const SavedLandmark& landmark : map.landmarks)
-    if (landmark.type != kPoint)
-      reject("landmark " + std::to_string(landmark.id) + " is of type " + landmark.type);
+    if (landmark.type != type_of(parts.landmark))
+      reject("landmark " + std::to_string(landmark.id) + " is of type " + landmark.type +
+             ", those of the measurement model are of type " + type_of(parts.landmark));
   if (!start.at_saved_pose) return;
   if (map.pose.size() == 0)
     reject("it has no pose to start at; set map.start to given_pose, and map.initial_x, ...");
@@ -75,7 +80,8 @@ void enter_landmarks(const MapStart& start, const MappedParts& parts, Rows& rows
                                          : parts.state.add(parts.landmark, landmark.mean, nothing);
     if (!landmark.exact) append_rows(rows, own, map.dimension);
     parts.registry.restore({block, landmark.id, landmark.times_seen, landmark.updates,
-                            landmark.confirmed, landmark.appearance});
+                            landmark.confirmed, landmark.appearance, 0, landmark.extent,
+                            landmark.prior_judged});
   }
   parts.registry.number_from(map.next_number);
 }
@@ -122,8 +128,9 @@ SavedMap leave_map(const GaussianState& state, BlockId pose, const CalibrationSt
   map.next_number = registry.next_number();
   for (const RegisteredLandmark& known : registry.landmarks()) {
     const bool exact = state.is_constant(known.block);
-    map.landmarks.push_back({known.id, kPoint, state.estimate(known.block), known.times_seen,
-                             known.updates, known.confirmed, exact, known.appearance});
+    map.landmarks.push_back({known.id, type_of(landmark), state.estimate(known.block),
+                             known.times_seen, known.updates, known.confirmed, exact,
+                             known.appearance, known.extent, known.prior_judged});
     if (!exact) order.push_back(known.block);
   }
   Rows rows;

@@ -96,9 +96,8 @@ LineExtraction::Fit LineExtraction::fit(const Sums& s) {
 /// Along a grazing beam noise moves a point along the wall, hardly off it.
 double LineExtraction::bound(const Eigen::Vector2d& n, const BeamPoint& point) const {
   const double facing = std::abs(n.dot(point.p)) / point.range;
-  return std::min(parameters_.split_distance,
-                  kWallSigmas * parameters_.floor_r +
-                      kRangeSigmas * parameters_.sigma_range * facing);
+  return std::min(parameters_.split_distance, kWallSigmas * parameters_.floor_r +
+                                                  kRangeSigmas * parameters_.sigma_range * facing);
 }
 
 bool LineExtraction::fits(const Fit& fit, std::size_t first, std::size_t last) const {
@@ -133,8 +132,7 @@ std::size_t LineExtraction::farthest_from_chord(std::size_t first, std::size_t l
   const Eigen::Vector2d& from = points_[first].p;
   const Eigen::Vector2d across = left_of((points_[last - 1].p - from).normalized());
   for (std::size_t i = first + 1; i + 1 < last; ++i) {
-    const double distance =
-        std::abs(across.dot(points_[i].p - from)) / bound(across, points_[i]);
+    const double distance = std::abs(across.dot(points_[i].p - from)) / bound(across, points_[i]);
     if (distance <= most) continue;
     most = distance;
     farthest = i;
@@ -156,8 +154,8 @@ void LineExtraction::add_run(std::size_t first, std::size_t last) {
   runs_.push_back({first, last, sums_[last] - sums_[first], runs_.size()});
 }
 
-/// A split leaves points of the other wall, up to split_distance off, at the end of a run; they would
-/// turn its line always the same way. The bearing of where both lines meet is known better.
+/// A split leaves points of the other wall, up to split_distance off, at the end of a run; they
+/// would turn its line always the same way. The bearing of where both lines meet is known better.
 void LineExtraction::part_at_corner(Run& before, Run& after) const {
   if (after.first + 1 != before.last) return;
   for (int pass = 0; pass < 2; ++pass) {
@@ -238,8 +236,7 @@ LineExtraction::Fit LineExtraction::without_tilt(std::size_t index) const {
       with_error += met * (facing - fit.r);
     }
   }
-  const double slope =
-      with_error / (with_place - all_met * all_places / merged_[index].sums.n);
+  const double slope = with_error / (with_place - all_met * all_places / merged_[index].sums.n);
   fit.alpha = std::remainder(fit.alpha - slope, 2.0 * kPi);
   fit.n = {std::cos(fit.alpha), std::sin(fit.alpha)};
   fit.r = fit.n.dot(fit.centre);

@@ -1,7 +1,8 @@
 #pragma once
 // Straight lines in a row of points that a laser scanner saw in the order of their bearings.
 //
-//   break at jumps -> split at the farthest point from the chord -> fit -> part where two lines meet
+//   break at jumps -> split at the farthest point from the chord -> fit -> part where two lines
+//   meet
 //   -> merge -> choose
 //
 // A line n(alpha)^T p = r is fitted by weighted total least squares, (S2.9) and (S2.10) in the

@@ -16,7 +16,8 @@ static_assert(std::endian::native == std::endian::little, "numbers are copied as
 constexpr std::string_view kMagic("SLAMMAP\0", 8);
 constexpr std::uint32_t kVersion = 1;
 constexpr std::size_t kDigest = 64;
-constexpr std::uint8_t kConfirmed = 1, kExact = 2;
+constexpr std::uint8_t kConfirmed = 1, kExact = 2, kExtent = 4, kPriorJudged = 8;
+constexpr std::uint8_t kAllFlags = kConfirmed | kExact | kExtent | kPriorJudged;
 /// The least bytes of a landmark without its coordinates, and of a parameter.
 constexpr std::uint64_t kLeastLandmark = 8 + 4 + 4 + 1 + 1 + 1 + 1 + 1, kLeastParameter = 1 + 1 + 8;
 
@@ -80,8 +81,9 @@ void write_landmark(Writer& out, const SavedLandmark& landmark) {
   out.number(landmark.id);
   out.number(static_cast<std::uint32_t>(landmark.times_seen));
   out.number(static_cast<std::uint32_t>(landmark.updates));
-  out.number(static_cast<std::uint8_t>((landmark.confirmed ? kConfirmed : 0) |
-                                       (landmark.exact ? kExact : 0)));
+  out.number(static_cast<std::uint8_t>(
+      (landmark.confirmed ? kConfirmed : 0) | (landmark.exact ? kExact : 0) |
+      (landmark.extent ? kExtent : 0) | (landmark.prior_judged ? kPriorJudged : 0)));
   out.word(landmark.type);
   out.numbers(landmark.mean);
   const Descriptor nothing;
@@ -89,6 +91,9 @@ void write_landmark(Writer& out, const SavedLandmark& landmark) {
   out.number(static_cast<std::uint8_t>(appearance.kind));
   out.number(appearance.size);
   out.raw({reinterpret_cast<const char*>(appearance.bytes.data()), appearance.size});
+  if (const auto& extent = landmark.extent)
+    for (const double number : {extent->begin, extent->end, extent->sigma_begin, extent->sigma_end})
+      out.number(number);
 }
 
 int read_count(Reader& in) {
@@ -98,15 +103,23 @@ int read_count(Reader& in) {
   return static_cast<int>(count);
 }
 
+Extent read_extent(Reader& in) {
+  Extent extent;
+  for (double* number : {&extent.begin, &extent.end, &extent.sigma_begin, &extent.sigma_end})
+    *number = in.number<double>();
+  return extent;
+}
+
 SavedLandmark read_landmark(Reader& in, int dimension) {
   SavedLandmark landmark;
   landmark.id = in.number<std::int64_t>();
   landmark.times_seen = read_count(in);
   landmark.updates = read_count(in);
   const auto flags = in.number<std::uint8_t>();
-  if (flags > (kConfirmed | kExact)) in.reject("unknown flags of a landmark");
+  if (flags > kAllFlags) in.reject("unknown flags of a landmark");
   landmark.confirmed = (flags & kConfirmed) != 0;
   landmark.exact = (flags & kExact) != 0;
+  landmark.prior_judged = (flags & kPriorJudged) != 0;
   landmark.type = in.word();
   landmark.mean.resize(dimension);
   in.numbers(landmark.mean.data(), static_cast<std::size_t>(dimension));
@@ -120,6 +133,7 @@ SavedLandmark read_landmark(Reader& in, int dimension) {
   const std::string_view bytes = in.raw(appearance.size);
   std::memcpy(appearance.bytes.data(), bytes.data(), bytes.size());
   if (appearance.size > 0) landmark.appearance = std::make_shared<Descriptor>(appearance);
+  if ((flags & kExtent) != 0) landmark.extent = read_extent(in);
   return landmark;
 }
 

@@ -31,7 +31,7 @@ LandmarkMap landmarks_of(const SavedMap& map) {
       row += map.dimension;
     }
     if (saved.confirmed)
-      landmarks.push_back({saved.id, saved.type, saved.mean, cov, saved.times_seen});
+      landmarks.push_back({saved.id, saved.type, saved.mean, cov, saved.times_seen, saved.extent});
   }
   std::sort(landmarks.begin(), landmarks.end(),
             [](const LandmarkEstimate& a, const LandmarkEstimate& b) { return a.id < b.id; });

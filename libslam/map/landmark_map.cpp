@@ -2,6 +2,7 @@
 #include <array>
 #include <fstream>
 #include <limits>
+#include <span>
 #include <stdexcept>
 
 #include <libslam/map/csv_text.hpp>
@@ -15,8 +16,17 @@ using Eigen::Index;
 constexpr Index kMaxDimension = 6;
 constexpr std::array<const char*, 3> kPointAxes = {"x", "y", "z"};
 
-Index cells_of(Index dimension) {
-  return 3 + dimension + dimension * (dimension + 1) / 2;
+constexpr std::array<const char*, 4> kExtentColumns = {"begin", "end", "sigma_begin", "sigma_end"};
+
+/// The columns of a map.csv.
+struct Layout {
+  Index dimension = 0;
+  bool extents = false;  ///< where any landmark has one
+};
+
+Index cells_of(const Layout& layout) {
+  const Index n = layout.dimension;
+  return 3 + n + n * (n + 1) / 2 + (layout.extents ? Index{kExtentColumns.size()} : 0);
 }
 
 bool is_plain_word(const std::string& type) {
@@ -39,7 +49,17 @@ void check(const LandmarkEstimate& landmark) {
   if (!is_plain_word(landmark.type)) throw std::invalid_argument(who + "type is not a plain word");
 }
 
-std::string header(const LandmarkMap& map, Index dimension) {
+Layout layout_of(const LandmarkMap& map) {
+  Layout layout{2, false};
+  for (const LandmarkEstimate& landmark : map) {
+    layout.dimension = std::max(layout.dimension, landmark.mean.size());
+    layout.extents = layout.extents || landmark.extent;
+  }
+  return layout;
+}
+
+std::string header(const LandmarkMap& map, const Layout& layout) {
+  const Index dimension = layout.dimension;
   const bool points =
       dimension <= Index{kPointAxes.size()} &&
       std::all_of(map.begin(), map.end(), [](const auto& l) { return l.type == "point"; });
@@ -50,10 +70,14 @@ std::string header(const LandmarkMap& map, Index dimension) {
   for (Index i = 0; i < dimension; ++i) line += (points ? "," : ",mean_") + axis(i);
   for (Index i = 0; i < dimension; ++i)
     for (Index j = i; j < dimension; ++j) line += ",cov_" + axis(i) + axis(j);
-  return line + ",times_seen\n";
+  line += ",times_seen";
+  if (layout.extents)
+    for (const char* column : kExtentColumns) line += std::string(",") + column;
+  return line + '\n';
 }
 
-std::string row(const LandmarkEstimate& landmark, Index dimension) {
+std::string row(const LandmarkEstimate& landmark, const Layout& layout) {
+  const Index dimension = layout.dimension;
   std::string line;
   append_number(line, landmark.id);
   line += ',' + landmark.type;
@@ -69,20 +93,37 @@ std::string row(const LandmarkEstimate& landmark, Index dimension) {
     }
   line += ',';
   append_number(line, landmark.times_seen);
+  const Extent extent = landmark.extent.value_or(Extent{});
+  if (layout.extents)
+    for (const double number : {extent.begin, extent.end, extent.sigma_begin, extent.sigma_end}) {
+      line += ',';
+      if (landmark.extent) append_number(line, number);
+    }
   return line + '\n';
 }
 
-Index dimension_of_header(const std::vector<std::string_view>& cells, TextPlace place) {
-  if (cells.size() >= 2 && cells[0] == "id" && cells[1] == "type" && cells.back() == "times_seen")
+Layout layout_of_header(const std::vector<std::string_view>& cells, TextPlace place) {
+  const bool extents = !cells.empty() && cells.back() == kExtentColumns.back();
+  const std::size_t beside = extents ? kExtentColumns.size() : 0;
+  if (cells.size() >= 3 + beside && cells[0] == "id" && cells[1] == "type" &&
+      cells[cells.size() - beside - 1] == "times_seen")
     for (Index n = 1; n <= kMaxDimension; ++n)
-      if (cells_of(n) == static_cast<Index>(cells.size())) return n;
+      if (cells_of({n, extents}) == static_cast<Index>(cells.size())) return {n, extents};
   throw_at(place, "not the header of a map.csv");
 }
 
-LandmarkEstimate parse_row(const std::vector<std::string_view>& cells, Index dimension,
+Extent parse_extent(std::span<const std::string_view> cells, TextPlace place) {
+  const Extent extent{parse_number(cells[0], place), parse_number(cells[1], place),
+                      parse_number(cells[2], place), parse_number(cells[3], place)};
+  if (extent.begin > extent.end) throw_at(place, "an extent ends before it begins");
+  return extent;
+}
+
+LandmarkEstimate parse_row(const std::vector<std::string_view>& cells, const Layout& layout,
                            TextPlace place) {
-  if (static_cast<Index>(cells.size()) != cells_of(dimension))
-    throw_at(place, "expected " + std::to_string(cells_of(dimension)) + " cells, found " +
+  const Index dimension = layout.dimension;
+  if (static_cast<Index>(cells.size()) != cells_of(layout))
+    throw_at(place, "expected " + std::to_string(cells_of(layout)) + " cells, found " +
                         std::to_string(cells.size()));
   LandmarkEstimate landmark;
   landmark.id = parse_integer(cells[0], place);
@@ -99,6 +140,8 @@ LandmarkEstimate parse_row(const std::vector<std::string_view>& cells, Index dim
       if (j < n) landmark.cov(i, j) = landmark.cov(j, i) = parse_number(*cell, place);
   landmark.times_seen = static_cast<int>(
       std::clamp<std::int64_t>(parse_integer(*cell, place), 0, std::numeric_limits<int>::max()));
+  if (layout.extents && !cells.back().empty())
+    landmark.extent = parse_extent(std::span(cells).last(kExtentColumns.size()), place);
   return landmark;
 }
 
@@ -121,11 +164,9 @@ const LandmarkEstimate* LandmarkMap::find(std::int64_t id) const {
 }
 
 void write_landmark_map(std::ostream& out, const LandmarkMap& map) {
-  Index dimension = 2;
-  for (const LandmarkEstimate& landmark : map)
-    dimension = std::max(dimension, landmark.mean.size());
-  out << header(map, dimension);
-  for (const LandmarkEstimate& landmark : map) out << row(landmark, dimension);
+  const Layout layout = layout_of(map);
+  out << header(map, layout);
+  for (const LandmarkEstimate& landmark : map) out << row(landmark, layout);
   if (!out) throw std::runtime_error("writing the landmark map failed");
 }
 
@@ -134,16 +175,16 @@ LandmarkMap read_landmark_map(std::istream& in, std::string_view name) {
   std::string line;
   std::vector<std::string_view> cells;
   TextPlace place{name, 0};
-  Index dimension = 0;
+  Layout layout;
   while (std::getline(in, line)) {
     ++place.line;
     split_cells(line, cells);
     if (place.line == 1) {
-      dimension = dimension_of_header(cells, place);
+      layout = layout_of_header(cells, place);
       continue;
     }
     try {
-      map.add(parse_row(cells, dimension, place));
+      map.add(parse_row(cells, layout, place));
     } catch (const std::invalid_argument& error) {
       throw_at(place, error.what());
     }

@@ -28,6 +28,14 @@ bool is_plain_word(const std::string& word) {
   });
 }
 
+void check_extent(const std::string& who, const Extent& extent) {
+  for (const double number : {extent.begin, extent.end, extent.sigma_begin, extent.sigma_end})
+    if (!std::isfinite(number)) reject(who + ": its extent is not finite");
+  if (extent.begin > extent.end) reject(who + ": its extent ends before it begins");
+  if (extent.sigma_begin < 0.0 || extent.sigma_end < 0.0)
+    reject(who + ": a standard deviation of its ends is negative");
+}
+
 void check_landmark(const SavedLandmark& landmark, int dimension) {
   const std::string who = "landmark " + std::to_string(landmark.id);
   if (landmark.mean.size() != dimension)
@@ -39,6 +47,7 @@ void check_landmark(const SavedLandmark& landmark, int dimension) {
   if (landmark.times_seen < 0 || landmark.updates < 0) reject(who + ": a count is negative");
   if (landmark.appearance && landmark.appearance->size > landmark.appearance->bytes.size())
     reject(who + ": appearance is longer than a descriptor");
+  if (landmark.extent) check_extent(who, *landmark.extent);
 }
 
 void check_pose(const BlockVector& pose) {

@@ -4,12 +4,14 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <Eigen/Core>
 
 #include <libslam/data/descriptor.hpp>
+#include <libslam/data/extent.hpp>
 #include <libslam/data/ground_truth.hpp>
 #include <libslam/state/block.hpp>
 
@@ -25,6 +27,8 @@ struct SavedLandmark {
   bool confirmed = true;  ///< false: still provisional
   bool exact = false;     ///< without error, and without rows in the covariance
   std::shared_ptr<const Descriptor> appearance;  ///< null: not known
+  std::optional<Extent> extent = std::nullopt;   ///< of a line, all that was seen of it
+  bool prior_judged = false;  ///< the building prior has counted it, or found it oblique
 };
 
 /// A calibration parameter at the end of the run.

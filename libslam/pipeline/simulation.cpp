@@ -70,11 +70,29 @@ double known_depth(double focal_length, double baseline, double sigma_pixel) {
   return focal_length * baseline / (10.0 * std::sqrt(2.0) * sigma_pixel);
 }
 
+/// Walls in the scans of a laser whose beams are as noisy as it says, and which are straight.
+void see_walls(const LaserSensorParameters& laser, Parameters& p) {
+  p.measurement.model = "line";
+  p.frontend.source = "scan_lines";
+  p.frontend.max_range = laser.max_range;
+  ScanLinesParameters& lines = p.frontend.lines;
+  lines.sigma_range = std::max(laser.sigma_range, 1e-3);
+  lines.floor_alpha_deg = lines.floor_r = 0.0;
+  lines.split_distance = 5.0 * lines.sigma_range;
+  p.association.method = "sequential_compatibility";
+  p.association.confirm_after = 3;
+  p.association.prune_after = 20;
+  p.association.merge_every = 10;
+}
+
 /// The sensor whose sightings the filter uses: range and bearing, else points of a stereo camera,
-/// else tags in its images.
+/// else tags in its images, else walls for a laser.
 void choose_sensor(const Scenario& scenario, Parameters& p) {
   const StereoSensorParameters& points = scenario.stereo;
   const StereoImagesParameters& images = scenario.stereo_images;
+  if (!scenario.range_bearing.enabled && !points.enabled && !images.enabled &&
+      scenario.laser.enabled)
+    return see_walls(scenario.laser, p);
   if (scenario.range_bearing.enabled || (!points.enabled && !images.enabled)) {
     p.measurement.noise = "configured";
     p.measurement.sigma_range = scenario.range_bearing.sigma_range;
@@ -132,6 +150,7 @@ Parameters nominal_filter(const Scenario& scenario) {
   p.motion = scenario.motion;
   p.motion.noise.from_log = false;
   choose_sensor(scenario, p);
+  if (p.measurement.model == "line") return p;  // walls have no identities
   p.association.gate_probability = 1.0;
   const bool tags = p.frontend.source == "fiducials";  // they have numbers of their own
   if (tags) p.association.gate_probability = 0.999;    // and their corners errors of their own

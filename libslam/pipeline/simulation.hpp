@@ -21,7 +21,8 @@ void resolve_world_files(Scenario& scenario, const std::filesystem::path& direct
 
 /// What the robot of a scenario knows about itself: its nominal vehicle with the noise of the
 /// odometry, the odometry field, and the sensor to use with its nominal noise: range and bearing
-/// where that is enabled or nothing else is, else points of a stereo camera, else tags in images.
+/// where that is enabled or nothing else is, else points of a stereo camera, else tags in images,
+/// else walls in the scans of a laser.
 Parameters nominal_filter(const Scenario& scenario);
 
 /// All conflicts between parameters, ranges included.

@@ -73,8 +73,7 @@ void drive(const Scenario& scenario, const Parameters& parameters, std::uint64_t
     if (prediction.updates > before)
       corrections += (record.pose - prediction.pose).head<2>().cwiseAbs();
     if (!step->step.frame || record.cov(0, 0) <= 0.0) continue;
-    Eigen::Vector3d error =
-        record.pose - relative_pose(simulator->start(), step->T_world_robot);
+    Eigen::Vector3d error = record.pose - relative_pose(simulator->start(), step->T_world_robot);
     error[2] = wrap_angle(error[2]);
     squares += error.cwiseAbs2();
     if (prediction.updates > before) heading += error[2] * error[2];
@@ -102,12 +101,14 @@ Figures run(const std::string& name, const std::function<void(Parameters&)>& cha
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) drive(scenario, parameters, seed, figures);
   figures.rmse = figures.rmse.cwiseSqrt();
   figures.heading_at_updates = std::sqrt(figures.heading_at_updates);
-  std::printf("%-22s RMSE %4.1f %4.1f mm %.3f deg (%.3f at updates)  NEES %5.2f (worst %5.2f)  correction %4.1f %4.1f mm"
-              "  updates %6.1f  landmarks %4.1f  CPU %.2f s\n",
-              name.c_str(), 1e3 * figures.rmse.x(), 1e3 * figures.rmse.y(),
-              figures.rmse.z() / kDegree, figures.heading_at_updates / kDegree, figures.nees, figures.worst_nees,
-              1e3 * figures.correction.x(), 1e3 * figures.correction.y(), figures.updates,
-              figures.landmarks, figures.cpu);
+  std::printf(
+      "%-22s RMSE %4.1f %4.1f mm %.3f deg (%.3f at updates)  NEES %5.2f (worst %5.2f)  correction "
+      "%4.1f %4.1f mm"
+      "  updates %6.1f  landmarks %4.1f  CPU %.2f s\n",
+      name.c_str(), 1e3 * figures.rmse.x(), 1e3 * figures.rmse.y(), figures.rmse.z() / kDegree,
+      figures.heading_at_updates / kDegree, figures.nees, figures.worst_nees,
+      1e3 * figures.correction.x(), 1e3 * figures.correction.y(), figures.updates,
+      figures.landmarks, figures.cpu);
   return figures;
 }
 
@@ -130,9 +131,8 @@ TEST(HouseOfLines, IsMappedWithinThreeCentimetresAndConsistently) {
 
 TEST(HouseOfLines, FeaturesInViewSaveUpdates) {
   const Figures& all = every_scan();
-  const Figures stretched = run("mu = 0.08", [](Parameters& p) {
-    p.policies.update_schedule.per_feature = 0.08;
-  });
+  const Figures stretched =
+      run("mu = 0.08", [](Parameters& p) { p.policies.update_schedule.per_feature = 0.08; });
   EXPECT_LE(stretched.updates, 0.8 * all.updates);
   EXPECT_LE(stretched.rmse.x(), 1.15 * all.rmse.x());
   EXPECT_LE(stretched.rmse.y(), 1.15 * all.rmse.y());

@@ -16,6 +16,8 @@ void check_frontend(const Parameters& p, Conflicts& conflicts);
 void check_displacement(const Parameters& p, Conflicts& conflicts);
 /// Robots in space, and points in pairs of images.
 void check_spatial(const Parameters& p, Conflicts& conflicts);
+/// Straight walls, and what is done with them alone.
+void check_lines(const Parameters& p, Conflicts& conflicts);
 /// Front-ends that look at images.
 void check_images(const Parameters& p, Conflicts& conflicts);
 void check_association(const Parameters& p, Conflicts& conflicts);

@@ -19,8 +19,7 @@ const double kGate = chi_square_quantile(0.99, 2), kNewGate = chi_square_quantil
 std::vector<Verdict> associate(ShiftedPoints& points) {
   std::vector<Feature> features(points.features());
   std::vector<Verdict> verdicts;
-  SequentialCompatibility(kGate, kNewGate)
-      .associate(features, points.registry(), points, verdicts);
+  SequentialCompatibility(kGate, kNewGate).associate(features, points.registry(), points, verdicts);
   return verdicts;
 }
 

@@ -69,12 +69,13 @@ TEST(BuildingPrior, LeavesAnObliqueWallAlone) {
   building.add(0.3);
   building.add(0.3 + 0.5 * kPi);
   building.apply();
-  const BlockId oblique = building.add(0.3 + 0.35);
+  constexpr double kOblique = 0.3 + 0.35;
+  const BlockId oblique = building.add(kOblique);
   const double direction = building.main_direction();
   building.apply();
   EXPECT_EQ(building.prior.judged(), 3);
   EXPECT_EQ(building.prior.oblique(), 1);
-  EXPECT_EQ(building.state.estimate(oblique)[0], 0.65);
+  EXPECT_EQ(building.state.estimate(oblique)[0], kOblique);
   EXPECT_EQ(building.state.covariance_of(oblique)(0, 0), 0.02 * 0.02);
   EXPECT_EQ(building.main_direction(), direction);
 }

@@ -21,7 +21,8 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-EkfSlamParts parts_with(const char* frame, bool known, const CalibrationParameters& calibration = {}) {
+EkfSlamParts parts_with(const char* frame, bool known,
+                        const CalibrationParameters& calibration = {}) {
   EkfSlamParts parts;
   parts.motion = std::make_unique<OdometryIncrement>(MotionParameters{}, calibration);
   parts.measurement = std::make_unique<LineMeasurement>();
@@ -103,8 +104,7 @@ TEST(LineSlam, CalibrationOfANoiselessRunReachesTheTruth) {
       MotionAction action;
       action.dt = 0.1;
       const double measured = length / kSpeed;
-      action.increment =
-          follow_arc({measured, 0.0, (turn - kBias * measured) / kTurn}).increment;
+      action.increment = follow_arc({measured, 0.0, (turn - kBias * measured) / kTurn}).increment;
       action.cov_increment = 1e-12 * Eigen::Matrix3d::Identity();
       filter.propagate(&action);
       filter.update(world.observe(random, 0.0));
@@ -217,8 +217,9 @@ TEST(LineSlam, ASavedMapOfLinesGoesOnAsIfNothingHadHappened) {
       step(whole, world, random);
       step(second, world_again, random_again);
     }
-    EXPECT_LT((second.state().estimate(second.pose()) - whole.state().estimate(whole.pose())).norm(),
-              1e-9);
+    EXPECT_LT(
+        (second.state().estimate(second.pose()) - whole.state().estimate(whole.pose())).norm(),
+        1e-9);
     const auto map = whole.landmarks(), map_again = second.landmarks();
     ASSERT_EQ(map.size(), map_again.size());
     for (std::size_t i = 0; i < map.size(); ++i) {

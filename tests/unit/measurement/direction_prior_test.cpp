@@ -21,8 +21,9 @@ struct Scene {
 
 Scene make_scene(double psi, double alpha) {
   Scene scene;
-  scene.direction = scene.state.add(DirectionPrior::direction_spec(), Eigen::VectorXd::Constant(1, psi),
-                                    Eigen::MatrixXd::Identity(1, 1));
+  scene.direction =
+      scene.state.add(DirectionPrior::direction_spec(), Eigen::VectorXd::Constant(1, psi),
+                      Eigen::MatrixXd::Identity(1, 1));
   scene.line = scene.state.add({"", Chart::kLine, 2, WorldRole::kLine}, Eigen::Vector2d(alpha, 4.0),
                                Eigen::Matrix2d::Identity());
   return scene;
@@ -39,7 +40,8 @@ std::vector<Scene> scenes() {
   std::uniform_real_distribution<double> uniform(-kPi, kPi);
   while (all.size() < 30) {
     const double psi = uniform(random), alpha = uniform(random);
-    if (std::abs(std::remainder(alpha - psi, 0.5 * kPi)) < 0.75) all.push_back(make_scene(psi, alpha));
+    if (std::abs(std::remainder(alpha - psi, 0.5 * kPi)) < 0.75)
+      all.push_back(make_scene(psi, alpha));
   }
   return all;
 }

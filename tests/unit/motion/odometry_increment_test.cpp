@@ -96,8 +96,9 @@ TEST(OdometryIncrement, CalibrationUndoesWheelsAndATrackThatAreWrong) {
   constexpr double kTrack = 0.4, kTrueTrack = 0.42, kLeft = 1.03, kRight = 0.98;
   const OdometryIncrement model(parameters("composition"), calibrated());
   // The robot turns by (R r - L l) / b where the odometry says (r - l) / b0, r and l the paths of
-  // the wheels: with ds = (r + l) / 2 and dphi, r = ds + b0 dphi / 2, l = ds - b0 dphi / 2. Likewise
-  // its path is (R r + L l) / 2, which has a term in dphi: the model has none, so it turns little.
+  // the wheels: with ds = (r + l) / 2 and dphi, r = ds + b0 dphi / 2, l = ds - b0 dphi / 2.
+  // Likewise its path is (R r + L l) / 2, which has a term in dphi: the model has none, so it turns
+  // little.
   const double mean = 0.5 * (kLeft + kRight), apart = kRight - kLeft;
   const Eigen::Vector3d values(mean, mean * kTrack / kTrueTrack, apart / kTrueTrack);
   for (const double turn : {0.0, 0.02, -0.3}) {

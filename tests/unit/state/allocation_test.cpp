@@ -173,8 +173,7 @@ TEST(Allocation, AStepWithLinesIsFreeOfItInSteadyState) {
       registry.record_sighting(verdicts[i].landmark, nullptr,
                                model.sighted_part(state, pose, block, features[i]));
     }
-    return paired > 0 &&
-           ekf.correct(state, pose, std::span(measurements).first(paired)).applied;
+    return paired > 0 && ekf.correct(state, pose, std::span(measurements).first(paired)).applied;
   };
   for (const double heading : {0.03, -0.03, 0.0}) ASSERT_TRUE(step(heading));
   const long before = g_allocations.load();

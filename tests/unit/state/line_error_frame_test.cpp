@@ -176,8 +176,8 @@ TEST(LineErrorFrame, IsForThePlaneAlone) {
   GaussianState state;
   Eigen::VectorXd start = Eigen::VectorXd::Zero(7);
   start[6] = 1.0;
-  const BlockId pose = state.add({"pose", Chart::kSE3, 6, WorldRole::kPose}, start,
-                                 Eigen::MatrixXd::Identity(6, 6));
+  const BlockId pose =
+      state.add({"pose", Chart::kSE3, 6, WorldRole::kPose}, start, Eigen::MatrixXd::Identity(6, 6));
   state.add({"", Chart::kLine, 2, WorldRole::kLine}, Eigen::Vector2d(1, 2),
             Eigen::Matrix2d::Identity());
   RightInvariantFrame frame;

@@ -34,9 +34,9 @@ struct LoopClosureParameters {
             {"1", "A pose elsewhere in the window must explain so much less of the view.", 0, 1});
     v.value("min_pairs", min_pairs,
             {"1", "Fewest pairs of lines, not all parallel, that must agree.", 2, 100});
-    v.value("joint_probability", joint_probability,
-            {"1", "They agree if their joint misfit is below this chi-square probability.", 1e-6,
-             1});
+    v.value(
+        "joint_probability", joint_probability,
+        {"1", "They agree if their joint misfit is below this chi-square probability.", 1e-6, 1});
     v.value("confirmations", confirmations,
             {"1", "Searches from different places that must find the same correction.", 1, 100});
   }

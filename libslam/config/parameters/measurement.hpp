@@ -16,33 +16,26 @@ struct FrontendParameters {
   std::string source = "range_bearing";
   double min_range = 0.0;
   double max_range = 1e6;
-  std::string points_beside_lines = "none";
   ScanLinesParameters lines;
   StereoFrontendParameters stereo;
   FiducialParameters fiducials;
   TrunkParameters trunks;
 
   void describe(auto& v) {
-    v.value("source", source,
-            {"",
-             "Where features come from: range-bearing observations, the path that a sensor reports "
-             "of itself (odometry observations labelled input.sensor_label), logged points of a "
-             "stereo camera, points of its images, tags in its images, straight lines or trunks in the "
-             "scans of a laser.",
-             0,
-             0,
-             {"range_bearing", "sensor_path", "stereo_points", "stereo_images", "fiducials",
-              "scan_lines", "scan_trunks"}});
+    v.value(
+        "source", source,
+        {"",
+         "Where features come from: range-bearing observations, the path that a sensor reports "
+         "of itself (odometry observations labelled input.sensor_label), logged points of a "
+         "stereo camera, points of its images, tags in its images, straight lines or trunks in the "
+         "scans of a laser.",
+         0,
+         0,
+         {"range_bearing", "sensor_path", "stereo_points", "stereo_images", "fiducials",
+          "scan_lines", "scan_trunks"}});
     v.value("min_range", min_range,
             {"m", "Nearer observations are ignored; of stereo points by their depth.", 0});
     v.value("max_range", max_range, {"m", "Farther observations are ignored.", 0});
-    v.value("points_beside_lines", points_beside_lines,
-            {"",
-             "Points that scan_lines finds in a scan beside the lines: none, corners where two "
-             "lines meet, or trunks.",
-             0,
-             0,
-             {"none", "corners", "trunks"}});
     v.section("lines", lines);
     v.section("stereo", stereo);
     v.section("fiducials", fiducials);

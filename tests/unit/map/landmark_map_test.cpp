@@ -60,8 +60,8 @@ TEST(LandmarkMap, RefusesAnExtentThatEndsBeforeItBegins) {
   const std::string head =
       "id,type,mean_1,mean_2,cov_11,cov_12,cov_22,times_seen,begin,end,sigma_begin,sigma_end\n";
   EXPECT_NO_THROW(read(head + "1,line,0,2,1,0,1,3,1,2,0.1,0.1\n"));
-  EXPECT_THROW(read(head + "1,line,0,2,1,0,1,3,2,1,0.1,0.1\n"), std::invalid_argument);
-  EXPECT_THROW(read(head + "1,line,0,2,1,0,1,3\n"), std::invalid_argument);
+  EXPECT_THROW(read(head + "1,line,0,2,1,0,1,3,2,1,0.1,0.1\n"), std::runtime_error);
+  EXPECT_THROW(read(head + "1,line,0,2,1,0,1,3\n"), std::runtime_error);
 }
 
 TEST(LandmarkMap, ReadsBackBitForBitAlsoWithMixedDimensions) {

@@ -55,14 +55,14 @@ std::size_t matched(const Sightings& these, const Sightings& those) {
 std::vector<Sightings> our_trunks(const ImportedLog& log, const FrontendParameters& frontend) {
   TrunkDetector detector(frontend.trunks);
   std::vector<Sightings> all;
-  std::vector<Trunk> trunks;
+  std::vector<DetectedTrunk> trunks;
   for (const ImportedLaserScan& scan : log.laser_scans) {
     std::vector<double> ranges;
     for (const float r : scan.ranges)
       ranges.push_back(r < log.laser.max_range ? r : std::numeric_limits<double>::infinity());
     detector.detect({ranges, log.laser.first_bearing, log.laser.resolution}, trunks);
     Sightings& sightings = all.emplace_back();
-    for (const Trunk& trunk : trunks)
+    for (const DetectedTrunk& trunk : trunks)
       if (trunk.range > frontend.min_range && trunk.range < frontend.max_range)
         sightings.emplace_back(trunk.range, trunk.bearing);
   }

@@ -19,8 +19,8 @@ using mrpt::maps::CSimpleMap;
 using Point = cv::Point;
 
 // Blue, green, red. Path as in the plots of the report.
-const cv::Scalar kUnknown(0xeb, 0xed, 0xee), kInk(0x28, 0x23, 0x1f), kPath(0xb2, 0x72, 0x00),
-    kPaper(0xff, 0xff, 0xff), kRule(0xc8, 0xc8, 0xc8), kTree(0x00, 0x5e, 0xd5);
+const cv::Scalar kInk(0x28, 0x23, 0x1f), kPath(0xb2, 0x72, 0x00), kPaper(0xff, 0xff, 0xff),
+    kRule(0xc8, 0xc8, 0xc8), kTree(0x00, 0x5e, 0xd5);
 
 constexpr int kLeft = 64, kRight = 24, kTop = 24, kBottom = 58;  // margins [pixel]
 constexpr int kShift = 4;  // fractional bits of coordinates that OpenCV draws
@@ -42,10 +42,11 @@ struct Sheet {
   }
 };
 
-/// The cells that say anything, and the key poses. A few stray returns do not count: a row or
-/// column needs several known cells.
+/// The cells that say anything, the key poses, and walls not far from these. A few stray returns do
+/// not count: a row or column needs several known cells.
 Eigen::AlignedBox2d seen_part(const COccupancyGridMap2D& grid,
-                              const std::vector<Eigen::Vector2d>& path) {
+                              const std::vector<Eigen::Vector2d>& path,
+                              const LandmarkMap& landmarks) {
   constexpr int kFew = 4;
   constexpr float kSays = 0.1F;
   const auto width = static_cast<int>(grid.getSizeX()), height = static_cast<int>(grid.getSizeY());
@@ -69,14 +70,20 @@ Eigen::AlignedBox2d seen_part(const COccupancyGridMap2D& grid,
   extend(columns, 0, static_cast<double>(grid.getXMin()));
   extend(rows, 1, static_cast<double>(grid.getYMin()));
   for (const Eigen::Vector2d& p : path) box.extend(p);
-  return box;
+  if (box.isEmpty()) return box;
+  constexpr double kFarthest = 0.15;  // of the larger side: a stray wall is not worth the paper
+  const Eigen::Vector2d rim = Eigen::Vector2d::Constant(kFarthest * box.sizes().maxCoeff());
+  const Eigen::AlignedBox2d limit(box.min() - rim, box.max() + rim);
+  for (const LandmarkEstimate& landmark : landmarks)
+    if (const auto wall = segment_of(landmark)) box.extend(wall->from).extend(wall->to);
+  return box.intersection(limit);
 }
 
 /// The grid over the whole sheet: free white, unknown light grey, occupied grey.
 cv::Mat shade(const COccupancyGridMap2D& grid, const Sheet& sheet) {
   const int width = static_cast<int>(grid.getSizeX()), height = static_cast<int>(grid.getSizeY());
   cv::Mat cells(height, width, CV_8UC1);
-  constexpr double kDarkest = 150.0, kGrey = 237.0, kFree = 255.0;
+  constexpr double kDarkest = 110.0, kGrey = 226.0, kFree = 255.0;
   for (int row = 0; row < height; ++row)
     for (int column = 0; column < width; ++column) {
       const double p = static_cast<double>(grid.getCell(column, row));
@@ -112,10 +119,20 @@ void draw_landmarks(cv::Mat& picture, const Sheet& sheet, const LandmarkMap& lan
   constexpr int kRadius = 4 << kShift;
   for (const LandmarkEstimate& landmark : landmarks)
     if (const auto wall = segment_of(landmark))
-      cv::line(picture, sheet.fine(wall->from), sheet.fine(wall->to), kInk, 2, cv::LINE_AA, kShift);
+      cv::line(picture, sheet.fine(wall->from), sheet.fine(wall->to), kInk, 1, cv::LINE_AA, kShift);
     else if (landmark.type == "point" && landmark.mean.size() >= 2)
       cv::circle(picture, sheet.fine(landmark.mean.head<2>()), kRadius, kTree, cv::FILLED,
                  cv::LINE_AA, kShift);
+}
+
+/// What was drawn beyond the sheet disappears under the paper around it.
+void clear_margins(cv::Mat& picture, const Sheet& sheet) {
+  const int bottom = kTop + sheet.height(), right = kLeft + sheet.width();
+  for (const cv::Rect& margin : {cv::Rect(0, 0, picture.cols, kTop),
+                                 cv::Rect(0, bottom, picture.cols, picture.rows - bottom),
+                                 cv::Rect(0, 0, kLeft, picture.rows),
+                                 cv::Rect(right, 0, picture.cols - right, picture.rows)})
+    picture(margin).setTo(kPaper);
 }
 
 /// 1, 2 or 5 times a power of ten, at least `least`.
@@ -187,7 +204,7 @@ std::vector<Eigen::Vector2d> key_positions(const CSimpleMap& map) {
 std::vector<std::uint8_t> draw_map(const COccupancyGridMap2D& grid, const CSimpleMap& map,
                                    const LandmarkMap& landmarks, int max_side) {
   const std::vector<Eigen::Vector2d> path = key_positions(map);
-  Eigen::AlignedBox2d box = seen_part(grid, path);
+  Eigen::AlignedBox2d box = seen_part(grid, path, landmarks);
   if (box.isEmpty()) return {};
   const Eigen::Vector2d rim =
       Eigen::Vector2d::Constant(std::max(0.5, 0.02 * box.sizes().maxCoeff()));
@@ -199,6 +216,7 @@ std::vector<std::uint8_t> draw_map(const COccupancyGridMap2D& grid, const CSimpl
   shade(grid, sheet).copyTo(inside);
   draw_path(picture, sheet, path);
   draw_landmarks(picture, sheet, landmarks);
+  clear_margins(picture, sheet);
   draw_axes(picture, sheet);
   draw_scale_bar(picture, sheet);
   std::vector<std::uint8_t> png;

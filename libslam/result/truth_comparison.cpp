@@ -90,14 +90,16 @@ void compare_in_space(const PathView& robot, const LandmarkMap& map, const Groun
                                       raw.has_value());
 }
 
-/// The poses of `path`, each with the number of the step of `steps` that was due by its time.
+/// The poses of `path`, each with the number of its step: the next of `steps` that has its time.
+/// Many steps of a log may have the same time.
 std::vector<EstimatedPose> numbered_poses(const Trajectory& path,
                                           std::span<const EstimatedPose> steps) {
   constexpr double kSameTime = 1e-6;
   std::vector<EstimatedPose> poses(path.times.size());
   for (std::size_t i = 0, k = 0; i < poses.size(); ++i) {
-    while (k + 1 < steps.size() && steps[k + 1].time <= path.times[i] + kSameTime) ++k;
+    while (k + 1 < steps.size() && steps[k].time < path.times[i] - kSameTime) ++k;
     poses[i].step = steps.empty() ? 0 : steps[k].step;
+    if (k + 1 < steps.size()) ++k;
     poses[i].time = path.times[i];
     poses[i].pose = path.poses[i];
   }

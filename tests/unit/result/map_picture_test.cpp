@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 #include <mrpt/maps/COccupancyGridMap2D.h>
+#include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 
 #include <libslam/io/exporters/map_picture.hpp>
@@ -56,23 +57,19 @@ cv::Mat picture_of(const LandmarkMap& landmarks, int max_side) {
   return cv::imdecode(draw_map(room(), drive(), landmarks, max_side), cv::IMREAD_COLOR);
 }
 
-/// Pixels darker than a third of white.
-int dark_pixels(const cv::Mat& picture, const cv::Rect& part) {
-  int count = 0;
-  for (int row = part.y; row < part.y + part.height; ++row)
-    for (int column = part.x; column < part.x + part.width; ++column) {
-      const auto& p = picture.at<cv::Vec3b>(row, column);
-      if (p[0] < 85 && p[1] < 85 && p[2] < 85) ++count;
-    }
-  return count;
+/// How much darker a part is than in the other picture, in pixels from white to black.
+double ink(const cv::Mat& picture, const cv::Mat& without, const cv::Rect& part) {
+  const cv::Mat darker = without(part) - picture(part);  // saturates at 0
+  const cv::Scalar sum = cv::sum(darker);
+  return (sum[0] + sum[1] + sum[2]) / (3.0 * 255.0);
 }
 
 TEST(MapPicture, IsCutToWhatWasSeenAndBounded) {
-  const cv::Mat picture = picture_of({}, 400);
+  const cv::Mat picture = picture_of({}, 300);
   ASSERT_FALSE(picture.empty());
   // 8 x 5 m of cells, half a metre around, and the margins of the axes.
-  EXPECT_NEAR(picture.cols, 400 + 88, 2);
-  EXPECT_NEAR(picture.rows, 400 * 6.0 / 9.0 + 82, 4);
+  EXPECT_NEAR(picture.cols, 300 + 88, 2);
+  EXPECT_NEAR(picture.rows, 300 * 6.0 / 9.0 + 82, 4);
   const auto& free = picture.at<cv::Vec3b>(picture.rows / 2, picture.cols / 2);
   EXPECT_GT(free[0], 245);
   const auto& unknown = picture.at<cv::Vec3b>(30, 70);
@@ -83,16 +80,27 @@ TEST(MapPicture, IsCutToWhatWasSeenAndBounded) {
 TEST(MapPicture, WallsAreThinDarkSegments) {
   LandmarkMap walls;
   walls.add(line(M_PI / 2, 2.0, Extent{-3.0, 3.0}));
-  const cv::Mat with = picture_of(walls, 400), without = picture_of({}, 400);
+  const cv::Mat with = picture_of(walls, 300), without = picture_of({}, 300);
   ASSERT_EQ(with.size(), without.size());
-  const double pixels_per_metre = 400 / 9.0;
-  const cv::Rect inside(66, 26, with.cols - 66 - 26, with.rows - 26 - 60);
-  const int drawn = dark_pixels(with, inside) - dark_pixels(without, inside);
-  const double length = 6.0 * pixels_per_metre;
-  EXPECT_GT(drawn, 0.9 * length);
-  EXPECT_LT(drawn, 3.0 * length);
-  const int row = 24 + static_cast<int>(std::lround(1.0 * pixels_per_metre));  // y = 2, top at 3
-  EXPECT_GT(dark_pixels(with, {66, row - 2, inside.width, 5}), 0.9 * length);
+  constexpr double kPixelsPerMetre = 300 / 9.0, kLength = 6.0 * kPixelsPerMetre;
+  const cv::Rect everywhere(0, 0, with.cols, with.rows);
+  const double drawn = ink(with, without, everywhere);
+  EXPECT_GT(drawn, 0.6 * kLength);
+  EXPECT_LT(drawn, 2.0 * kLength);                                      // a pixel or two wide
+  const int row = 24 + static_cast<int>(std::lround(kPixelsPerMetre));  // y = 2, the top at 3
+  EXPECT_NEAR(ink(with, without, {0, row - 3, with.cols, 7}), drawn, 1e-9);
+}
+
+TEST(MapPicture, AStrayWallNeitherStretchesTheSheetNorLeavesIt) {
+  LandmarkMap walls;
+  walls.add(line(0.0, 500.0, Extent{-1.0, 1.0}));
+  walls.add(line(M_PI / 2, 0.5, Extent{-400.0, 0.0}));
+  const cv::Mat picture = picture_of(walls, 300);
+  ASSERT_FALSE(picture.empty());
+  EXPECT_LE(picture.cols, 300 + 88 + 1);
+  EXPECT_GT(picture.rows, 150);
+  const auto& margin = picture.at<cv::Vec3b>(picture.rows / 2, picture.cols - 4);
+  EXPECT_EQ(margin, cv::Vec3b(255, 255, 255));
 }
 
 }  // namespace

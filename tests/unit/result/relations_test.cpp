@@ -123,6 +123,26 @@ TEST(SmoothedPath, TheWindowIsThatOfTheSteps) {
   EXPECT_NEAR(comparison.path_smoothed->raw->max_m, 0.5, 1e-12);
 }
 
+// As the kf-slam demo of MRPT: a truth without times, and many steps with the same time.
+TEST(SmoothedPath, StepsOfOneTimeAreToldApartByTheirOrder) {
+  GroundTruth truth;
+  Trajectory smoothed;
+  std::vector<Eigen::Vector3d> driven;
+  for (int k = 0; k < 6; ++k) {
+    truth.path.poses.emplace_back(k, 0, 0);
+    driven.emplace_back(k, 0, 0);
+    smoothed.times.push_back(k / 3);
+    smoothed.poses.emplace_back(k, 0, 0);
+  }
+  auto estimate = path_of(driven);
+  for (std::size_t k = 0; k < estimate.size(); ++k) estimate[k].time = smoothed.times[k];
+  TruthComparison comparison;
+  compare_smoothed(smoothed, estimate, truth, {}, comparison);
+  ASSERT_TRUE(comparison.path_smoothed);
+  EXPECT_EQ(comparison.path_smoothed->poses, 6);
+  EXPECT_EQ(comparison.path_smoothed->raw->max_m, 0.0);
+}
+
 TEST(Relations, PartOfTheComparisonAndOfItsJson) {
   GroundTruth truth;
   EXPECT_TRUE(truth.empty());

@@ -16,8 +16,8 @@ namespace {
 
 using mrpt::maps::COccupancyGridMap2D;
 
-LandmarkEstimate line(double alpha, double r, std::optional<Extent> extent) {
-  return {7, "line", Eigen::Vector2d(alpha, r), Eigen::Matrix2d::Identity(), 3, extent};
+LandmarkEstimate line(double alpha, double r, std::optional<Extent> extent, std::int64_t id = 7) {
+  return {id, "line", Eigen::Vector2d(alpha, r), Eigen::Matrix2d::Identity(), 3, extent};
 }
 
 TEST(LineSegment, EndsAreLeftAndRightOfTheFootOfTheNormal) {
@@ -94,7 +94,7 @@ TEST(MapPicture, WallsAreThinDarkSegments) {
 TEST(MapPicture, AStrayWallNeitherStretchesTheSheetNorLeavesIt) {
   LandmarkMap walls;
   walls.add(line(0.0, 500.0, Extent{-1.0, 1.0}));
-  walls.add(line(M_PI / 2, 0.5, Extent{-400.0, 0.0}));
+  walls.add(line(M_PI / 2, 0.5, Extent{-400.0, 0.0}, 8));
   const cv::Mat picture = picture_of(walls, 300);
   ASSERT_FALSE(picture.empty());
   EXPECT_LE(picture.cols, 300 + 88 + 1);

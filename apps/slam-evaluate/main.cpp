@@ -92,8 +92,10 @@ EvaluatedRun evaluate_run(const fs::path& directory, const Arguments& arguments,
   run.summary.truth = compare_with_truth(recorded, truth, identity_of(directory), arguments.window,
                                          placement_of(arguments));
   if (const fs::path smoothed = directory / "trajectory_smoothed.tum"; fs::exists(smoothed))
-    run.summary.truth->relations_smoothed =
-        compare_relations(read_true_path(smoothed), truth.relations);
+    compare_smoothed(
+        read_true_path(smoothed), recorded.path.poses, truth,
+        {placement_of(arguments).value_or(recorded.summary.result.placement), arguments.window},
+        *run.summary.truth);
   if (!truth.path.poses.empty() && !run.summary.truth->path)
     warning = directory.string() +
               ": no pose of the run, or of the part of it that was asked for, "

@@ -37,6 +37,11 @@ Getter of_position(std::optional<PathErrors::Position> PathErrors::*placement,
     return path.*placement ? Value((*(path.*placement)).*figure) : std::nullopt;
   });
 }
+Getter of_smoothed(std::optional<PathErrors::Position> PathErrors::*placement) {
+  return of_truth<PathErrors>(&TruthComparison::path_smoothed, [=](const PathErrors& path) {
+    return path.*placement ? Value((path.*placement)->rmse_m) : std::nullopt;
+  });
+}
 Getter of_heading(double PathErrors::Heading::*figure) {
   return of_path([=](const PathErrors& path) {
     return path.heading ? Value((*path.heading).*figure * kDegrees) : std::nullopt;
@@ -89,6 +94,8 @@ void describe_path(std::vector<Description>& list) {
   list.push_back({"ate_rmse_aligned_m", "path RMSE aligned [m]", of_position(aligned, &P::rmse_m)});
   list.push_back({"ate_mean_aligned_m", "  mean aligned [m]", of_position(aligned, &P::mean_m)});
   list.push_back({"ate_max_aligned_m", "  max aligned [m]", of_position(aligned, &P::max_m), true});
+  list.push_back({"smoothed_rmse_m", "  smoothed, raw [m]", of_smoothed(raw)});
+  list.push_back({"smoothed_rmse_aligned_m", "  smoothed, aligned [m]", of_smoothed(aligned)});
   list.push_back(
       {"rmse_heading_deg", "heading RMSE [deg]", of_heading(&PathErrors::Heading::rmse_rad)});
   list.push_back(

@@ -15,6 +15,12 @@ std::string number(double value, const char* format = "%.4g") {
   return text;
 }
 
+void say_path(const std::string& name, const PathErrors& path, Console& console) {
+  if (path.raw) console.say("  " + name + " error (RMSE): " + number(path.raw->rmse_m) + " m raw");
+  if (path.aligned)
+    console.say("  " + name + " error (RMSE): " + number(path.aligned->rmse_m) + " m aligned");
+}
+
 void say_relations(const std::string& path, const RelationErrors& errors, Console& console) {
   console.say("  relations, " + path + ": " + number(errors.trans_mean_m) + " m, " +
               number(errors.rot_mean_deg) + " deg");
@@ -31,12 +37,9 @@ void report(const RunSummary& summary, const fs::path& directory, Console& conso
     console.say("  " + parameter.name + " = " + number(parameter.mean, "%.5f") + " +- " +
                 number(parameter.sigma, "%.5f") +
                 (parameter.observable ? "" : "  (not observable in this log)"));
-  if (summary.truth && summary.truth->path) {
-    const auto& path = *summary.truth->path;
-    if (path.raw) console.say("  path error (RMSE): " + number(path.raw->rmse_m) + " m raw");
-    if (path.aligned)
-      console.say("  path error (RMSE): " + number(path.aligned->rmse_m) + " m aligned");
-  }
+  if (summary.truth && summary.truth->path) say_path("path", *summary.truth->path, console);
+  if (summary.truth && summary.truth->path_smoothed)
+    say_path("smoothed path", *summary.truth->path_smoothed, console);
   if (summary.truth && summary.truth->relations_smoothed)
     say_relations("smoothed path", *summary.truth->relations_smoothed, console);
   if (summary.truth && summary.truth->relations)

@@ -69,7 +69,7 @@ FeatureBatch ScanTrunks::to_features(const Scan& scan) {
   FeatureBatch batch;
   batch.reserve(trunks_.size());
   const int channel = channels_.of(scan.sensorLabel);
-  for (const Trunk& trunk : trunks_) {
+  for (const DetectedTrunk& trunk : trunks_) {
     if (trunk.range < min_range_ || trunk.range > max_range_) continue;
     Feature& feature = batch.emplace_back();
     feature.channel = channel;

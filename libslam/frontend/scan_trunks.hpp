@@ -42,7 +42,7 @@ class ScanTrunks final : public Frontend {
   TrunkDetector detector_;
   ChannelNumbers channels_;
   std::vector<double> ranges_;
-  std::vector<Trunk> trunks_;
+  std::vector<DetectedTrunk> trunks_;
   std::int64_t unusable_ = 0, scans_ = 0, found_ = 0;
 };
 

@@ -149,7 +149,8 @@ void StereoFeatures::extract(const mrpt::obs::CSensoryFrame& frame,
       if (!batch.empty()) batches.push_back(std::move(batch));
     } catch (const UnusableImages& defect) {
       ++unusable_;
-      if (warnings_.size() < kMostWarnings) warnings_.emplace_back(defect.what());
+      const bool repeated = !warnings_.empty() && warnings_.back() == defect.what();
+      if (!repeated && warnings_.size() < kMostWarnings) warnings_.emplace_back(defect.what());
     }
     observation->imageLeft.unload();  // of external storage: memory is bounded
     observation->imageRight.unload();

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 #include <Eigen/Dense>
 #include <mrpt/img/CImage.h>
@@ -29,7 +30,18 @@ std::string name_of(const mrpt::img::CImage& image, const char* side) {
                                     : std::string(side) + " image";
 }
 
+/// The same words for every image of a folder that is not there.
+void require_folder_of(const mrpt::img::CImage& image) {
+  if (!image.isExternallyStored()) return;
+  const auto folder =
+      std::filesystem::path(image.getExternalStorageFileAbsolutePath()).parent_path();
+  std::error_code ignored;
+  if (!std::filesystem::is_directory(folder, ignored))
+    throw UnusableImages("the folder of the images is missing: " + folder.string());
+}
+
 cv::Mat pixels_of(const mrpt::img::CImage& image, const char* side) {
+  require_folder_of(image);
   cv::Mat pixels;
   try {
     const bool beside = image.isExternallyStored();

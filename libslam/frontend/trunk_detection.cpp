@@ -96,10 +96,10 @@ bool TrunkDetector::is_isolated(const BeamView& scan, std::size_t index) const {
          (index + 1 == objects_.size() || far(object.last, objects_[index + 1].first));
 }
 
-Trunk TrunkDetector::fit(const BeamView& scan, const Object& object) const {
+DetectedTrunk TrunkDetector::fit(const BeamView& scan, const Object& object) const {
   constexpr int kIterations = 4;  // each gains a digit or more: the angle is small
   const auto [first, last] = object;
-  Trunk trunk;
+  DetectedTrunk trunk;
   trunk.first_beam = first;
   trunk.beams = last - first + 1;
   const double middle = 0.5 * static_cast<double>(first + last);
@@ -125,14 +125,14 @@ Trunk TrunkDetector::fit(const BeamView& scan, const Object& object) const {
   return trunk;
 }
 
-bool TrunkDetector::has_shape(const BeamView& scan, const Trunk& trunk) const {
+bool TrunkDetector::has_shape(const BeamView& scan, const DetectedTrunk& trunk) const {
   const double edges =
       scan.ranges[trunk.first_beam + trunk.beams - 1] - scan.ranges[trunk.first_beam];
   return trunk.diameter >= parameters_.min_diameter && trunk.diameter <= parameters_.max_diameter &&
          std::abs(edges) <= parameters_.skew * trunk.diameter;
 }
 
-void TrunkDetector::detect(const BeamView& scan, std::vector<Trunk>& trunks) {
+void TrunkDetector::detect(const BeamView& scan, std::vector<DetectedTrunk>& trunks) {
   trunks.clear();
   segment(scan);
   for (std::size_t index = 0; index < objects_.size(); ++index) {
@@ -140,7 +140,8 @@ void TrunkDetector::detect(const BeamView& scan, std::vector<Trunk>& trunks) {
     if (object.last - object.first + 1 < static_cast<std::size_t>(parameters_.min_beams) ||
         !stands_free(scan, object) || !is_isolated(scan, index))
       continue;
-    if (const Trunk trunk = fit(scan, object); has_shape(scan, trunk)) trunks.push_back(trunk);
+    if (const DetectedTrunk trunk = fit(scan, object); has_shape(scan, trunk))
+      trunks.push_back(trunk);
   }
 }
 

@@ -12,7 +12,7 @@
 namespace libslam {
 
 /// A circle, in the frame of the laser.
-struct Trunk {
+struct DetectedTrunk {
   double range = 0.0;     ///< to the centre [m]
   double bearing = 0.0;   ///< of the centre [rad], left positive
   double diameter = 0.0;  ///< [m]
@@ -50,7 +50,7 @@ class TrunkDetector {
   /// Throws std::invalid_argument where a bound is negative or no diameter lies between the bounds.
   explicit TrunkDetector(const TrunkParameters& parameters);
   /// Overwrites `trunks`, in the order of the beams.
-  void detect(const BeamView& scan, std::vector<Trunk>& trunks);
+  void detect(const BeamView& scan, std::vector<DetectedTrunk>& trunks);
 
  private:
   /// Beams from `first` to `last`.
@@ -60,8 +60,8 @@ class TrunkDetector {
   void segment(const BeamView& scan);
   bool stands_free(const BeamView& scan, const Object& object) const;
   bool is_isolated(const BeamView& scan, std::size_t index) const;
-  Trunk fit(const BeamView& scan, const Object& object) const;
-  bool has_shape(const BeamView& scan, const Trunk& trunk) const;
+  DetectedTrunk fit(const BeamView& scan, const Object& object) const;
+  bool has_shape(const BeamView& scan, const DetectedTrunk& trunk) const;
 
   std::vector<Object> objects_;  // of the last scan
   TrunkParameters parameters_;

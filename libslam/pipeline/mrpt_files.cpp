@@ -3,6 +3,7 @@
 #include <mrpt/maps/COccupancyGridMap2D.h>
 
 #include <libslam/io/exporters/grid_map.hpp>
+#include <libslam/io/exporters/map_picture.hpp>
 #include <libslam/io/exporters/scene_3d.hpp>
 #include <libslam/pipeline/mrpt_files.hpp>
 #include <libslam/result/trajectory.hpp>
@@ -16,15 +17,16 @@ void MrptFiles::keep(const StepRecord& record, const mrpt::obs::CSensoryFrame::P
     simple_map_.add(record.pose, record.cov, frame, record.time);
 }
 
-std::optional<ReportPicture> MrptFiles::render_grid() {
+std::optional<ReportPicture> MrptFiles::render_grid(const LandmarkMap& landmarks) {
   const mrpt::maps::CSimpleMap map = simple_map_.map();
   const auto grid = render_grid_map(map);
   grid_ = grid;
   if (!grid) return std::nullopt;
-  const std::vector<std::uint8_t> png = draw_grid_map(*grid, map);
+  const std::vector<std::uint8_t> png = draw_map(*grid, map, landmarks);
   if (png.empty()) return std::nullopt;
   char title[96];
-  std::snprintf(title, sizeof title, "Laser scans from the estimated key poses, cells of %.2g m",
+  std::snprintf(title, sizeof title,
+                "Landmarks over the laser scans of the key poses, cells of %.2g m",
                 static_cast<double>(grid->getResolution()));
   return ReportPicture{title, std::string(png.begin(), png.end())};
 }

@@ -25,8 +25,9 @@ class MrptFiles {
   void keep(const StepRecord& record, const mrpt::obs::CSensoryFrame::Ptr& frame);
   /// Moves the key frames to where the robot is now known to have been (a path in the plane).
   void correct(const Trajectory& path) { simple_map_.correct(path); }
-  /// Renders the grid of what was kept; a picture of it for the report, or nothing.
-  std::optional<ReportPicture> render_grid();
+  /// Renders the grid of what was kept; a picture of it under `landmarks` for the report, or
+  /// nothing.
+  std::optional<ReportPicture> render_grid(const LandmarkMap& landmarks);
   /// Writes the files into a run directory that holds trajectory.csv. Throws std::runtime_error
   /// naming the file that cannot be written.
   void write(const std::filesystem::path& directory, const LandmarkMap& map) const;

@@ -98,7 +98,7 @@ class Run {
       recorder_.add_smoothed_path(std::move(*smoothed));
     }
     if (request_.parameters.output.mrpt_files)
-      if (auto picture = mrpt_files_.render_grid()) recorder_.add_picture(std::move(*picture));
+      if (auto picture = mrpt_files_.render_grid(map)) recorder_.add_picture(std::move(*picture));
     RunSummary summary =
         recorder_.finish(summarize(), map, request_.truth, landmark_identity(request_.parameters));
     if (request_.parameters.output.mrpt_files) mrpt_files_.write(request_.directory, map);

@@ -165,12 +165,13 @@ RunSummary Recorder::finish(RunSummary summary, const LandmarkMap& map, const Gr
     summary.truth = compare_with_truth(path, map, calibration_means(summary.result.calibration),
                                        truth, identity, {summary.result.placement});
   if (smoothed_ && summary.truth)
-    summary.truth->relations_smoothed = compare_relations(*smoothed_, truth.relations);
+    compare_smoothed(*smoothed_, path.poses, truth, {summary.result.placement}, *summary.truth);
   replace_file(options_.directory / "run.json", to_json_text(summary));
   if (options_.report)
-    replace_file(options_.directory / "report.html",
-                 make_report({summary, map, path, options_.directory / "trajectory.csv", truth,
-                              statistics_.step_times(), pictures_}));
+    replace_file(
+        options_.directory / "report.html",
+        make_report({summary, map, path, options_.directory / "trajectory.csv", truth,
+                     statistics_.step_times(), pictures_, smoothed_ ? &*smoothed_ : nullptr}));
   return summary;
 }
 

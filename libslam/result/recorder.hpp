@@ -43,7 +43,7 @@ class Recorder {
   void record(const StepRecord& step);
 
   /// The path as it is known at the end: writes trajectory_smoothed.tum; finish() compares it with
-  /// the relations of the truth. Throws std::runtime_error naming the file that cannot be written.
+  /// the truth, too. Throws std::runtime_error naming the file that cannot be written.
   void add_smoothed_path(Trajectory path);
 
   /// A picture for the report. Throws std::invalid_argument where `png` is no PNG.

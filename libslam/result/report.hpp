@@ -24,6 +24,7 @@ struct ReportInput {
   const GroundTruth& truth;              ///< may be empty
   const SeriesEnvelope& step_times;      ///< [ms] over the number of the step
   std::span<const ReportPicture> pictures{};
+  const Trajectory* smoothed = nullptr;  ///< the path as it was known at the end, in the plane
 };
 
 /// The page as HTML, see assemble_page. Throws like TrajectoryReader.

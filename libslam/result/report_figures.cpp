@@ -79,6 +79,10 @@ std::string path_card(const TruthComparison& truth) {
   if (path.rotation)
     card.row("rotation", path.rotation->rmse_rad, "\u00b0", kDegrees)
         .row("rotation max", path.rotation->max_rad, "\u00b0", kDegrees);
+  if (truth.path_smoothed && truth.path_smoothed->raw)
+    card.row("ATE raw, smoothed", truth.path_smoothed->raw->rmse_m, "m");
+  if (truth.path_smoothed && truth.path_smoothed->aligned)
+    card.row("ATE aligned, smoothed", truth.path_smoothed->aligned->rmse_m, "m");
   card.row("drift at the end", path.drift_percent, "%");
   if (truth.relative)
     card.row("drift over " + format_figure(truth.relative->distance_m, "m"),

@@ -6,6 +6,7 @@
 
 #include <Eigen/Dense>
 
+#include <libslam/map/line_segment.hpp>
 #include <libslam/result/alignment.hpp>
 #include <libslam/result/report_map_data.hpp>
 #include <libslam/result/spatial_alignment.hpp>
@@ -128,6 +129,30 @@ Json true_landmark_list(const std::vector<TrueLandmark>& landmarks, const auto& 
   return list;
 }
 
+/// The lines of which a part was seen: their ends, id, times seen. In the plane.
+Json wall_list(const LandmarkMap& map, const TPose2D& T_truth_filter) {
+  Json list = Json::array();
+  for (const LandmarkEstimate& landmark : map) {
+    const auto wall = segment_of(landmark);
+    if (!wall || list.size() == kLandmarks) continue;
+    const Eigen::Vector2d from = transform_point(T_truth_filter, wall->from);
+    const Eigen::Vector2d to = transform_point(T_truth_filter, wall->to);
+    list.push_back({short_number(from.x()), short_number(from.y()), short_number(to.x()),
+                    short_number(to.y()), landmark.id, landmark.times_seen});
+  }
+  return list;
+}
+
+/// What only a run in the plane has.
+void add_planar_parts(Json& data, const ReportInput& in, const TPose2D& T_truth_filter) {
+  if (Json walls = wall_list(in.map, T_truth_filter); !walls.empty())
+    data["walls"] = std::move(walls);
+  if (in.smoothed != nullptr)
+    data["smoothed"] = polyline(in.smoothed->poses.size(), [&](std::size_t i) {
+      return transform_point(T_truth_filter, in.smoothed->poses[i].head<2>());
+    });
+}
+
 /// Where the run was when something happened.
 void add_events(Json& data, const ReportInput& in, const auto& view) {
   const auto before = [](std::int64_t step, const EstimatedPose& p) { return step < p.step; };
@@ -185,6 +210,7 @@ void add_map_data(Json& data, const ReportInput& in) {
     const PlanarView view{path_of_point(in.path.poses, in.truth.path.point_on_robot), in.truth.path,
                           known.placement.value_or(TPose2D(0, 0, 0))};
     data["map"] = view_data(in, view, known.placement.has_value());
+    add_planar_parts(data["map"], in, view.T);
     return;
   }
   const Trajectory truth = comparable_truth(in.path, in.truth.path);

@@ -57,6 +57,12 @@ std::string polyline(const Json& xs, const Json& ys, const char* css_class, auto
   return std::string("<polyline class=\"") + css_class + "\" points=\"" + points + "\"/>";
 }
 
+std::string wall_line(const Json& wall, auto&& to_x, auto&& to_y) {
+  return "<line class=\"wall\" x1=\"" + number(to_x(wall[0].get<double>())) + "\" y1=\"" +
+         number(to_y(wall[1].get<double>())) + "\" x2=\"" + number(to_x(wall[2].get<double>())) +
+         "\" y2=\"" + number(to_y(wall[3].get<double>())) + "\"/>";
+}
+
 std::string corner_label(double x, double y, const std::string& text,
                          const char* anchor = "start") {
   return "<text class=\"tick\" text-anchor=\"" + std::string(anchor) + "\" x=\"" + number(x) +
@@ -75,6 +81,12 @@ std::string map_drawing(const Json& map, const std::string& vertical) {
       x.add(point[0]);
       y.add(point[1]);
     }
+  if (map.contains("walls"))
+    for (const Json& wall : map["walls"])
+      for (const std::size_t end : {0, 2}) {
+        x.add(wall[end]);
+        y.add(wall[end + 1]);
+      }
   if (!(x.high >= x.low) || !(y.high >= y.low)) return "";
   const double scale = std::min((kWidth - 20.0) / x.width(), 600.0 / y.width());
   const double height = y.width() * scale + 40.0;
@@ -83,6 +95,10 @@ std::string map_drawing(const Json& map, const std::string& vertical) {
   std::string svg = open_svg(height);
   svg += polyline(map["truth"]["x"], map["truth"]["y"], "truth-line", to_x, to_y);
   svg += polyline(map["path"]["x"], map["path"]["y"], "estimate-line", to_x, to_y);
+  if (map.contains("smoothed"))
+    svg += polyline(map["smoothed"]["x"], map["smoothed"]["y"], "smoothed-line", to_x, to_y);
+  if (map.contains("walls"))
+    for (const Json& wall : map["walls"]) svg += wall_line(wall, to_x, to_y);
   const auto add_dots = [&](const char* key, const char* css_class, double radius) {
     for (const Json& point : map[key])
       svg += std::string("<circle class=\"") + css_class + "\" r=\"" + number(radius) + "\" cx=\"" +

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include <Eigen/Dense>
 
 #include <libslam/result/run_axis.hpp>
@@ -35,16 +37,20 @@ std::optional<mrpt::math::TPose2D> fit_path(std::span<const EstimatedPose> path,
   return fit_rigid(from, to);
 }
 
+std::optional<mrpt::math::TPose2D> raw_placement(std::span<const EstimatedPose> path,
+                                                 const Trajectory& truth, const Matches& matches,
+                                                 Placement placement) {
+  if (placement == Placement::none) return mrpt::math::TPose2D(0.0, 0.0, 0.0);
+  if (matches.empty() || !truth.has_heading) return std::nullopt;
+  return place_on(path[matches.front().estimate].pose, truth.poses[matches.front().truth]);
+}
+
 void compare_in_plane(std::span<const EstimatedPose> robot, const LandmarkMap& map,
                       const GroundTruth& truth, LandmarkIdentity identity,
                       const ComparisonRules& rules, TruthComparison& result) {
   const std::vector<EstimatedPose> path = path_of_point(robot, truth.path.point_on_robot);
   const Matches all = match_poses(path, truth.path);
-  std::optional<mrpt::math::TPose2D> raw;
-  if (rules.placement == Placement::none)
-    raw.emplace(0.0, 0.0, 0.0);
-  else if (!all.empty() && truth.path.has_heading)
-    raw = place_on(path[all.front().estimate].pose, truth.path.poses[all.front().truth]);
+  const auto raw = raw_placement(path, truth.path, all, rules.placement);
   if (const Matches matches = matches_within(rules.window, path, all); !matches.empty()) {
     result.path = compare_path(path, truth.path, matches, raw);
     result.relative = compare_relative(path, truth.path, matches);
@@ -84,6 +90,22 @@ void compare_in_space(const PathView& robot, const LandmarkMap& map, const Groun
                                       raw.has_value());
 }
 
+/// The poses of `path`, each with the number of its step: the next of `steps` that has its time.
+/// Many steps of a log may have the same time.
+std::vector<EstimatedPose> numbered_poses(const Trajectory& path,
+                                          std::span<const EstimatedPose> steps) {
+  constexpr double kSameTime = 1e-6;
+  std::vector<EstimatedPose> poses(path.times.size());
+  for (std::size_t i = 0, k = 0; i < poses.size(); ++i) {
+    while (k + 1 < steps.size() && steps[k].time < path.times[i] - kSameTime) ++k;
+    poses[i].step = steps.empty() ? 0 : steps[k].step;
+    if (k + 1 < steps.size()) ++k;
+    poses[i].time = path.times[i];
+    poses[i].pose = path.poses[i];
+  }
+  return poses;
+}
+
 bool is_compared_in_space(const PathView& estimate, const Trajectory& truth) {
   return !estimate.spatial.empty() &&
          (truth.poses.empty() || !truth.spatial.empty() || truth.has_heading);
@@ -104,6 +126,18 @@ Trajectory comparable_truth(const PathView& estimate, const Trajectory& truth) {
   else if (truth.spatial.empty())
     comparable.spatial = lift_to_space(truth.poses);
   return comparable;
+}
+
+void compare_smoothed(const Trajectory& smoothed, std::span<const EstimatedPose> estimate,
+                      const GroundTruth& truth, const ComparisonRules& rules,
+                      TruthComparison& comparison) {
+  const std::vector<EstimatedPose> robot = numbered_poses(smoothed, estimate);
+  comparison.relations_smoothed = compare_relations(robot, truth.relations);
+  const std::vector<EstimatedPose> path = path_of_point(robot, truth.path.point_on_robot);
+  const Matches all = match_poses(path, truth.path);
+  if (const Matches matches = matches_within(rules.window, path, all); !matches.empty())
+    comparison.path_smoothed = compare_path(path, truth.path, matches,
+                                            raw_placement(path, truth.path, all, rules.placement));
 }
 
 TruthComparison compare_with_truth(const PathView& estimate, const LandmarkMap& map,

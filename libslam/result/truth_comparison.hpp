@@ -5,6 +5,7 @@
 #include <limits>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -25,9 +26,11 @@ struct TruthComparison {
   std::optional<RelativeErrors> relative;
   std::optional<NeesSummary> nees;
   std::optional<MapErrors> map;
-  std::optional<RelationErrors> relations;           ///< of the path as it was driven
-  std::optional<RelationErrors> relations_smoothed;  ///< of the path as it was known at the end
-  std::map<std::string, double> calibration_error;   ///< estimate - truth
+  std::optional<RelationErrors> relations;  ///< of the path as it was driven
+  /// Of the path as it was known at the end, in the plane; placed by its own first match or fit.
+  std::optional<PathErrors> path_smoothed;
+  std::optional<RelationErrors> relations_smoothed;
+  std::map<std::string, double> calibration_error;  ///< estimate - truth
   /// T_truth_filter used for raw figures, else the fit of the path; absent without a path. One of
   /// the two: of a comparison in the plane, or in space.
   std::optional<mrpt::math::TPose2D> placement;
@@ -64,6 +67,12 @@ TruthComparison compare_with_truth(const PathView& estimate, const LandmarkMap& 
                                    const std::map<std::string, double>& calibration,
                                    const GroundTruth& truth, LandmarkIdentity identity,
                                    const ComparisonRules& rules = {});
+
+/// Adds what the truth says of `smoothed`, a path with times in the plane: the path of a run as it
+/// was known at its end. `estimate`, the path as it was driven, tells which step was when.
+void compare_smoothed(const Trajectory& smoothed, std::span<const EstimatedPose> estimate,
+                      const GroundTruth& truth, const ComparisonRules& rules,
+                      TruthComparison& comparison);
 
 /// The truth as `estimate` is compared with it: in space where that comparison is, in the plane
 /// elsewhere.

@@ -134,6 +134,7 @@ Json truth_to_json(const TruthComparison& truth) {
   if (truth.nees) write_nees(out, *truth.nees);
   if (truth.map) write_map(out, *truth.map);
   if (truth.relations) write_relations(out["relations"], *truth.relations);
+  if (truth.path_smoothed) write_path(out["path_smoothed"], *truth.path_smoothed);
   if (truth.relations_smoothed)
     write_relations(out["relations_smoothed"], *truth.relations_smoothed);
   for (const auto& [name, error] : truth.calibration_error) out["calibration_error"][name] = error;
@@ -155,6 +156,8 @@ TruthComparison truth_from_json(const Json& object) {
     truth.map->rmse_m = read(object, "map_rmse_m");
     truth.map->rmse_aligned_m = read(object, "map_rmse_aligned_m");
   }
+  if (const auto path = object.find("path_smoothed"); path != object.end())
+    truth.path_smoothed = read_path(*path);
   if (const auto relations = object.find("relations"); relations != object.end())
     truth.relations = read_relations(*relations);
   if (const auto relations = object.find("relations_smoothed"); relations != object.end())

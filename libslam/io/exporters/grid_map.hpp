@@ -1,10 +1,8 @@
 #pragma once
 // map.gridmap.gz: what a laser saw from key poses, as an occupancy grid for MRPT's own tools.
 
-#include <cstdint>
 #include <filesystem>
 #include <memory>
-#include <vector>
 
 #include <mrpt/maps/CSimpleMap.h>
 
@@ -27,10 +25,5 @@ std::shared_ptr<mrpt::maps::COccupancyGridMap2D> render_grid_map(
 /// Replaces `file` at once or not at all. Throws std::runtime_error naming it where it cannot be
 /// written.
 void write_grid_map(const std::filesystem::path& file, const mrpt::maps::COccupancyGridMap2D& grid);
-
-/// The grid as a PNG file, north up and at most `max_side` pixels wide and high, with the key poses
-/// of `map` as a line. Empty where it cannot be encoded.
-std::vector<std::uint8_t> draw_grid_map(const mrpt::maps::COccupancyGridMap2D& grid,
-                                        const mrpt::maps::CSimpleMap& map, int max_side = 1600);
 
 }  // namespace libslam

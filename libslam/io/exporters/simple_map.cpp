@@ -81,6 +81,7 @@ void SimpleMapWriter::correct(const Trajectory& path) {
   for (Pair& pair : pairs_) {
     const auto at = std::lower_bound(path.times.begin(), path.times.end(), pair.time - kSameTime);
     if (at == path.times.end() || *at > pair.time + kSameTime) continue;
+    if (at + 1 != path.times.end() && *(at + 1) <= pair.time + kSameTime) continue;  // which one?
     const Eigen::Vector3d& pose = path.poses[static_cast<std::size_t>(at - path.times.begin())];
     mrpt::math::CMatrixDouble66 cov;
     mrpt::poses::CPose3D before;

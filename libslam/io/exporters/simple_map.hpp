@@ -37,8 +37,8 @@ class SimpleMapWriter {
   /// The same in space. The covariance becomes one of (x, y, z, yaw, pitch, roll) to first order.
   void add(const SpatialEstimate& estimate, const mrpt::obs::CSensoryFrame::Ptr& frame,
            double time = 0.0);
-  /// Moves the pairs that were added with a time of `path` to its pose then; they keep their
-  /// covariance. A path in the plane, whose times do not decrease.
+  /// Moves the pairs that were added with a time of `path` to its pose then, if it has just one;
+  /// they keep their covariance. A path in the plane, whose times do not decrease.
   void correct(const Trajectory& path);
 
   std::size_t size() const { return pairs_.size(); }

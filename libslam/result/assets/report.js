@@ -22,6 +22,7 @@
   function mapExtent(map) {
     var xs = map.path.x.concat(map.truth.x), ys = map.path.y.concat(map.truth.y);
     map.landmarks.concat(map.true_landmarks).forEach(function (l) { xs.push(l[0]); ys.push(l[1]); });
+    (map.walls || []).forEach(function (w) { xs.push(w[0], w[2]); ys.push(w[1], w[3]); });
     return { x: d3.extent(xs), y: d3.extent(ys) };
   }
 
@@ -33,8 +34,11 @@
     var hasTruth = map.truth.x.length > 0, hasTrueMap = map.true_landmarks.length > 0;
     var plot = reportParts.section(main, title, hasTruth || hasTrueMap
       ? "The estimated path should lie on the true one, and nearly every true landmark (cross) inside its 95 % ellipse."
+      : map.walls ? "Walls should be single straight lines: a wall that was mapped twice is a loop that did not close."
       : "Ellipses hold the true place with 95 % probability; they should shrink when the robot comes back to known ground.");
-    var entries = [{ text: "estimated path and landmarks, 95 % ellipses", colour: "estimate" }];
+    var entries = [{ text: map.walls ? "estimated path" : "estimated path and landmarks, 95 % ellipses", colour: "estimate" }];
+    if (map.smoothed) entries.push({ text: "path as known at the end", colour: "level" });
+    if (map.walls) entries.push({ text: "walls", colour: "ink" });
     if (hasTruth || hasTrueMap) entries.push({ text: "truth", colour: "truth" });
     if (map.events) entries.push({ text: "event", colour: "event" });
     legend(plot, entries);
@@ -69,6 +73,13 @@
     var truthDots = layer.truth.selectAll(".truth-dot").data(map.truth_is_sparse ? truthPoints : [])
       .enter().append("circle").attr({ "class": "truth-dot", r: 1.6 });
     var pathLine = layer.path.append("path").attr("class", "estimate-line");
+    var smoothedPoints = map.smoothed ? d3.zip(map.smoothed.x, map.smoothed.y) : [];
+    var smoothedLine = layer.path.append("path").attr("class", "smoothed-line");
+    var walls = layer.marks.selectAll(".wall").data(map.walls || []).enter().append("line").attr("class", "wall")
+      .on("mousemove", function (w) {
+        showReadout("wall " + w[4] + ", seen " + w[5] + " times\nlength " +
+          number(Math.sqrt(Math.pow(w[2] - w[0], 2) + Math.pow(w[3] - w[1], 2))) + " m");
+      }).on("mouseout", hideReadout);
     var poses = layer.path.selectAll(".pose-ellipse").data(map.pose_ellipses).enter()
       .append("ellipse").attr("class", "pose-ellipse");
     var landmarks = layer.marks.selectAll(".landmark-ellipse").data(map.landmarks).enter()
@@ -107,6 +118,9 @@
       truthLine.attr("d", map.truth_is_sparse || !truthPoints.length ? null : line(truthPoints));
       truthDots.attr("transform", place);
       pathLine.attr("d", pathPoints.length ? line(pathPoints) : null);
+      smoothedLine.attr("d", smoothedPoints.length ? line(smoothedPoints) : null);
+      walls.attr({ x1: function (w) { return x(w[0]); }, y1: function (w) { return y(w[1]); },
+        x2: function (w) { return x(w[2]); }, y2: function (w) { return y(w[3]); } });
       poses.each(drawEllipse);
       landmarks.each(drawEllipse);
       dots.attr("transform", place);

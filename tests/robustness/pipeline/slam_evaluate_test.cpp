@@ -18,8 +18,10 @@ class SlamEvaluate : public ProgramTest {
   Outcome evaluate(const std::string& arguments) const { return run(kEvaluate + " " + arguments); }
 
   /// A run of `log` (default: the demo log with its truth) in the scratch directory.
-  std::string make_run(const std::string& name, const std::string& log = kGoodLog) const {
-    const Outcome outcome = run(kRun + " " + kConfig + " " + log + " --out " + path(name));
+  std::string make_run(const std::string& name, const std::string& log = kGoodLog,
+                       const std::string& options = "") const {
+    const Outcome outcome =
+        run(kRun + " " + kConfig + " " + log + " --out " + path(name) + " " + options);
     EXPECT_EQ(outcome.code, 0) << outcome.err;
     return path(name);
   }
@@ -86,6 +88,29 @@ TEST_F(SlamEvaluate, ComparesWithRelations) {
   expect_complaint(evaluate(run + " --relations " + write("bad", "1 2 3\n")), 4, "bad:1: ");
   expect_complaint(evaluate(run + " --relations " + write("far", "1 2 0 0 0 0 0 0\n")), 5,
                    "no poses at the times of the relations");
+}
+
+TEST_F(SlamEvaluate, TheSmoothedPathStandsBesideTheOneThatWasDriven) {
+  const std::string run = make_run("demo", kGoodLog, "--set filter.delayed_pose_distance=2");
+  const auto written = nlohmann::json::parse(read_all(run + "/run.json"))["truth"];
+  ASSERT_TRUE(written.contains("path_smoothed")) << written;
+  EXPECT_EQ(written["path_smoothed"]["poses"], written["poses"]);
+  // The log is simulated with the noise of the configuration: what came later helps.
+  EXPECT_LT(written["path_smoothed"]["ate_rmse_m"], written["ate_rmse_m"]);
+  EXPECT_NE(read_all(run + "/log.txt").find("smoothed path error (RMSE): "), std::string::npos);
+  std::istringstream rows(read_all(run + "/trajectory_smoothed.tum"));
+  std::string first, line, last;
+  for (std::getline(rows, first); std::getline(rows, line);) last = line;
+  const std::string times = first.substr(0, first.find(' ')) + " " + last.substr(0, last.find(' '));
+  const std::string relations = write("x.relations", times + " 1000 0 0 0 0 0\n");
+  const Outcome table = evaluate(run + " --relations " + relations);
+  EXPECT_EQ(table.code, 0) << table.err;
+  for (const char* row : {"  smoothed, raw [m]", "smoothed relations, translation [m]",
+                          "\nrelations, translation [m]"})
+    EXPECT_NE(table.out.find(row), std::string::npos) << row << table.out;
+  const auto truth = nlohmann::json::parse(evaluate("--json " + run).out)["runs"][0]["truth"];
+  EXPECT_NEAR(truth["path_smoothed"]["ate_rmse_m"].get<double>(),
+              written["path_smoothed"]["ate_rmse_m"].get<double>(), 1e-8);  // decimals of TUM
 }
 
 TEST_F(SlamEvaluate, SaysWhatCannotBeReadOrCompared) {

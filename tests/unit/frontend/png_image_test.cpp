@@ -96,5 +96,19 @@ TEST_F(PngImage, DamagedImagesOfALogAreOneWarning) {
   EXPECT_NE(frontend.warnings().front().find("left.png: cannot be read: PNG: "), std::string::npos);
 }
 
+TEST_F(PngImage, AFolderThatIsNotThereIsOneWarning) {
+  const auto pair = wall_at(20.0);
+  StereoFeatures frontend(stereo_parameters(), "", true);
+  for (const char* name : {"/000.png", "/001.png", "/002.png"}) {
+    pair->imageLeft.setExternalStorage(file() + "_Images" + name);
+    EXPECT_TRUE(features_of(frontend, pair).empty());
+  }
+  EXPECT_EQ(frontend.unusable(), 3);
+  ASSERT_EQ(frontend.warnings().size(), 1U);
+  EXPECT_NE(frontend.warnings().front().find("folder of the images is missing: " + file()),
+            std::string::npos)
+      << frontend.warnings().front();
+}
+
 }  // namespace
 }  // namespace libslam

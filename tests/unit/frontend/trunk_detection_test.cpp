@@ -49,8 +49,8 @@ class Scene {
   }
 };
 
-std::vector<Trunk> detect(const Scene& scene, const TrunkParameters& parameters = {}) {
-  std::vector<Trunk> trunks;
+std::vector<DetectedTrunk> detect(const Scene& scene, const TrunkParameters& parameters = {}) {
+  std::vector<DetectedTrunk> trunks;
   TrunkDetector(parameters).detect(scene.view(), trunks);
   return trunks;
 }

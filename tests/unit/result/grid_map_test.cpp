@@ -7,7 +7,6 @@
 #include <mrpt/maps/COccupancyGridMap2D.h>
 #include <mrpt/obs/CObservation2DRangeScan.h>
 #include <mrpt/serialization/CArchive.h>
-#include <opencv2/imgcodecs.hpp>
 
 #include <libslam/io/exporters/grid_map.hpp>
 #include <libslam/io/exporters/simple_map.hpp>
@@ -90,12 +89,8 @@ TEST(GridMap, StaysWithinItsCellsAndRange) {
   EXPECT_FALSE(render_grid_map(without_laser.map()));
 }
 
-TEST(GridMap, PictureIsAPngOfBoundedSize) {
+TEST(GridMap, NamesTheFileThatCannotBeWritten) {
   const auto map = room();
-  const auto png = draw_grid_map(*render_grid_map(map), map, 100);
-  const cv::Mat picture = cv::imdecode(png, cv::IMREAD_COLOR);
-  ASSERT_FALSE(picture.empty());
-  EXPECT_EQ(std::max(picture.rows, picture.cols), 100);
   EXPECT_THROW(write_grid_map("/nonexistent/map.gridmap.gz", *render_grid_map(map)),
                std::runtime_error);
 }

@@ -71,6 +71,78 @@ TEST(Relations, OfASmoothedPath) {
   EXPECT_EQ(truth_from_json(json).relations_smoothed->trans_mean_m, 0.25);
 }
 
+/// A straight drive of which only the path as it was known at the end is straight.
+TEST(SmoothedPath, IsComparedWithTheSameTruth) {
+  GroundTruth truth;
+  Trajectory smoothed;
+  std::vector<Eigen::Vector3d> driven;
+  for (int k = 0; k < 11; ++k) {
+    truth.path.times.push_back(k);
+    truth.path.poses.emplace_back(k, 2, 0);
+    smoothed.times.push_back(k);
+    smoothed.poses.emplace_back(0, k + (k > 5 ? 0.3 : 0.0), M_PI / 2);
+    driven.emplace_back(0, k + (k > 5 ? 0.6 : 0.0), M_PI / 2);
+  }
+  truth.relations = {{0, 10, {10, 0, 0}}};
+  const auto estimate = path_of(driven);
+  TruthComparison comparison =
+      compare_with_truth(estimate, {}, {}, truth, LandmarkIdentity::unknown);
+  EXPECT_FALSE(comparison.path_smoothed);
+  compare_smoothed(smoothed, estimate, truth, {}, comparison);
+  ASSERT_TRUE(comparison.path_smoothed && comparison.path_smoothed->raw);
+  EXPECT_EQ(comparison.path_smoothed->poses, 11);
+  EXPECT_NEAR(comparison.path_smoothed->raw->max_m, 0.3, 1e-12);
+  EXPECT_NEAR(comparison.path->raw->max_m, 0.6, 1e-12);
+  EXPECT_NEAR(comparison.relations_smoothed->trans_mean_m, 0.3, 1e-12);
+  const TruthComparison read = truth_from_json(truth_to_json(comparison));
+  ASSERT_TRUE(read.path_smoothed && read.path_smoothed->raw);
+  EXPECT_EQ(read.path_smoothed->raw->rmse_m, comparison.path_smoothed->raw->rmse_m);
+}
+
+TEST(SmoothedPath, TheWindowIsThatOfTheSteps) {
+  GroundTruth truth;
+  Trajectory smoothed;
+  std::vector<Eigen::Vector3d> driven;
+  for (int k = 0; k < 11; ++k) {
+    truth.path.times.push_back(k);
+    truth.path.poses.emplace_back(k, 0, 0);
+    driven.emplace_back(k, 0, 0);
+    if (k % 2 != 0) continue;  // not every step is remembered
+    smoothed.times.push_back(k);
+    smoothed.poses.emplace_back(k, k == 8 ? 0.5 : 0.0, 0);
+  }
+  ComparisonRules rules;
+  rules.window.last_step = 7;
+  TruthComparison comparison;
+  compare_smoothed(smoothed, path_of(driven), truth, rules, comparison);
+  ASSERT_TRUE(comparison.path_smoothed);
+  EXPECT_EQ(comparison.path_smoothed->poses, 4);
+  EXPECT_NEAR(comparison.path_smoothed->raw->max_m, 0.0, 1e-12);
+  rules.window.last_step = 8;
+  compare_smoothed(smoothed, path_of(driven), truth, rules, comparison);
+  EXPECT_NEAR(comparison.path_smoothed->raw->max_m, 0.5, 1e-12);
+}
+
+// As the kf-slam demo of MRPT: a truth without times, and many steps with the same time.
+TEST(SmoothedPath, StepsOfOneTimeAreToldApartByTheirOrder) {
+  GroundTruth truth;
+  Trajectory smoothed;
+  std::vector<Eigen::Vector3d> driven;
+  for (int k = 0; k < 6; ++k) {
+    truth.path.poses.emplace_back(k, 0, 0);
+    driven.emplace_back(k, 0, 0);
+    smoothed.times.push_back(k / 3);
+    smoothed.poses.emplace_back(k, 0, 0);
+  }
+  auto estimate = path_of(driven);
+  for (std::size_t k = 0; k < estimate.size(); ++k) estimate[k].time = smoothed.times[k];
+  TruthComparison comparison;
+  compare_smoothed(smoothed, estimate, truth, {}, comparison);
+  ASSERT_TRUE(comparison.path_smoothed);
+  EXPECT_EQ(comparison.path_smoothed->poses, 6);
+  EXPECT_EQ(comparison.path_smoothed->raw->max_m, 0.0);
+}
+
 TEST(Relations, PartOfTheComparisonAndOfItsJson) {
   GroundTruth truth;
   EXPECT_TRUE(truth.empty());

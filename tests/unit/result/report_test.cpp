@@ -71,6 +71,29 @@ TEST_F(ReportTest, WithoutTheLibraryThereAreStillDrawingsAndAHint) {
   expect_no_network(page);
 }
 
+TEST_F(ReportTest, WallsAndTheSmoothedPathStandInTheFrameOfTheTruth) {
+  sample::Run run = sample::make_run(50, 18);
+  for (TrueLandmark& landmark : run.truth.landmarks) landmark.position[0] += 100.0;
+  for (Eigen::Vector3d& pose : run.truth.path.poses) pose.x() += 100.0;  // of another origin
+  run.map.add({900, "line", Eigen::Vector2d(0.0, 12.0), 1e-4 * Eigen::Matrix2d::Identity(), 5,
+               Extent{-2.0, 3.0}});
+  record(run);
+  const Trajectory smoothed{{run.steps[0].time}, {run.steps[0].pose}, {}};
+  ReportInput shown = input();
+  shown.smoothed = &smoothed;
+  const auto data = make_report_data(shown);
+  ASSERT_EQ(data["map"]["walls"].size(), 1u);
+  const auto& wall = data["map"]["walls"][0];
+  EXPECT_NEAR(wall[0].get<double>(), 112.0, 1e-3);
+  EXPECT_NEAR(wall[2].get<double>(), 112.0, 1e-3);
+  EXPECT_NEAR(wall[3].get<double>() - wall[1].get<double>(), 5.0, 1e-3);
+  EXPECT_EQ(wall[4], 900);
+  EXPECT_NEAR(data["map"]["smoothed"]["x"][0].get<double>(), 100.0, 1e-3);
+  const std::string page = make_report(shown, folder_.path() / "nowhere");
+  EXPECT_TRUE(has(page, "<line class=\"wall\""));
+  EXPECT_TRUE(has(page, "class=\"smoothed-line\""));
+}
+
 TEST_F(ReportTest, SixtyThousandStepsStayBelowThreeMegabytes) {
   record(sample::make_run(60000, 16));
   const auto folder = plotting_library_folder();

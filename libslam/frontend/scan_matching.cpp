@@ -36,6 +36,13 @@ Eigen::Vector3d difference(const Eigen::Vector3d& T, const Eigen::Vector3d& gues
   return d;
 }
 
+/// What noise of the normals pretends to know may be more than a blind direction has.
+Eigen::Matrix3d without_negative(const Eigen::Matrix3d& hessian) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(hessian);
+  return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).asDiagonal() *
+         eigen.eigenvectors().transpose();
+}
+
 }  // namespace
 
 ScanMatcher::ScanMatcher(const ScanMatchingParameters& parameters) : parameters_(parameters) {}
@@ -126,6 +133,7 @@ ScanMatcher::Sums ScanMatcher::add_up(const Eigen::Vector3d& T, double cut) cons
         weight * (across * across.transpose() - pair.var_turn * along * along.transpose());
     sums.gradient += weight * pair.residual * across;
   }
+  sums.hessian = without_negative(sums.hessian);
   return sums;
 }
 

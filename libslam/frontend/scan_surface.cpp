@@ -13,7 +13,7 @@ constexpr int kMost = 20;                // neighbours on a side
 constexpr double kJump = 0.3;            // no surface goes on across a gap of this [m] ...
 constexpr double kGrazing = 5.0;         // ... and of so many spacings of beams on a wall ahead
 constexpr double kRoughest = 0.05;       // spread across a line [m]
-constexpr double kSlenderness = 9.0;     // variance along a line per variance across
+constexpr double kSlenderness = 25.0;    // variance along a line per variance across
 constexpr double kSmallestVar = 2.5e-5;  // across a line: (5 mm)^2, ranges are rounded
 
 /// The last of at most kMost neighbours of `at` in the direction of `step`.

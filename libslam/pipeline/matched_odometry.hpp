@@ -20,9 +20,6 @@
 // far add up to C_k, the covariance of the pose k since the reference: Q_k is the positive part of
 // C_k - F (Q_1 + ... + Q_k-1) F^T. Only the first increment after a reference has the whole
 // uncertainty of a match, and a robot at rest gains none.
-//
-// Source of the sharing of references: Pomerleau et al. 2015 (key frames of ICP odometry);
-// of the fusion: Censi, "An accurate closed-form estimate of ICP's covariance", ICRA 2007.
 
 #include <cstdint>
 #include <map>

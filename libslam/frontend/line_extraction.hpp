@@ -30,14 +30,9 @@
 
 #include <libslam/config/parameters.hpp>
 #include <libslam/data/extent.hpp>
+#include <libslam/frontend/beam_points.hpp>
 
 namespace libslam {
-
-/// One end of a beam, in the frame of the sensor.
-struct BeamPoint {
-  double range = 0.0, bearing = 0.0;  ///< [m], [rad]
-  Eigen::Vector2d p = Eigen::Vector2d::Zero();
-};
 
 struct ExtractedLine {
   double alpha = 0.0, r = 0.0;                    ///< frame of the sensor, r >= 0

@@ -30,9 +30,8 @@ class ScanLines final : public Frontend {
   std::map<std::string, double> figures() const override;
 
  private:
-  bool is_level(const mrpt::obs::CObservation2DRangeScan& scan);
-  /// Fills points_ by increasing bearing; returns the step between two beams [rad].
-  double read_points(const mrpt::obs::CObservation2DRangeScan& scan);
+  /// False, and counted, if the scanner is tilted.
+  bool accepts(const mrpt::obs::CObservation2DRangeScan& scan);
 
   FrontendParameters parameters_;
   std::string sensor_label_;

@@ -51,7 +51,9 @@ Pipeline::Pipeline(const Parameters& parameters, const TrueState* truth, FilterS
       keeps_velocity_(parameters.motion.model == "constant_twist"),
       frontend_(make_frontend(parameters)),
       schedule_(parameters.policies),
-      filter_(make_parts(parameters, truth, std::move(start))) {}
+      filter_(make_parts(parameters, truth, std::move(start))) {
+  if (parameters.input.scan_matching.enabled) matched_.emplace(parameters);
+}
 
 StepRecord Pipeline::process(const LogStep& step) {
   const bool moves = step.action || step.twist || keeps_velocity_;
@@ -60,11 +62,13 @@ StepRecord Pipeline::process(const LogStep& step) {
     action = keep_velocity(step.time);
   else if (moves && !ignore_odometry_)
     action = odometry_.read(step);
+  if (matched_ && action) matched_->refine(step, *action);
   if (moves) propagate(action ? &*action : nullptr);
   return update(step);
 }
 
 StepRecord Pipeline::process_frame(const LogStep& step) {
+  if (matched_) matched_->restart();
   propagate(nullptr);
   return update(step);
 }

@@ -12,6 +12,7 @@
 #include <libslam/filter/ekf_slam.hpp>
 #include <libslam/frontend/frontend.hpp>
 #include <libslam/frontend/odometry.hpp>
+#include <libslam/pipeline/matched_odometry.hpp>
 #include <libslam/policy/update_schedule.hpp>
 
 namespace libslam {
@@ -61,6 +62,8 @@ class Pipeline {
   const Frontend& frontend() const { return *frontend_; }
   const UpdateSchedule& schedule() const { return schedule_; }
   const OdometryReader& odometry() const { return odometry_; }
+  /// Null unless `input.scan_matching` is enabled.
+  const MatchedOdometry* matched_odometry() const { return matched_ ? &*matched_ : nullptr; }
   /// What the last frame did to the filter; empty if it was not due.
   const UpdateOutcome& last_update() const { return last_update_; }
   /// What the front-end made of the last frame, due or not.
@@ -76,6 +79,7 @@ class Pipeline {
   Eigen::Vector3d planar_pose() const;
 
   OdometryReader odometry_;
+  std::optional<MatchedOdometry> matched_;
   bool ignore_odometry_, keeps_velocity_;
   std::unique_ptr<Frontend> frontend_;
   UpdateSchedule schedule_;

@@ -49,9 +49,23 @@ void check_no_odometry(const Parameters& p, Conflicts& conflicts) {
   }
 }
 
+/// Scans are matched against pose increments of a robot in the plane, and give such increments.
+void check_scan_matching(const Parameters& p, Conflicts& conflicts) {
+  if (!p.input.scan_matching.enabled) return;
+  if (p.input.odometry != "auto" && p.input.odometry != "increments")
+    conflicts.push_back({{"input.scan_matching.enabled", "input.odometry"},
+                         "matched increments take the place of pose increments; input.odometry " +
+                             p.input.odometry + " reads other fields of the log"});
+  if (p.motion.model != "odometry_increment" || p.motion.increment_form != "composition")
+    conflicts.push_back({{"input.scan_matching.enabled", "motion.model", "motion.increment_form"},
+                         "matched increments go sideways, too: only odometry_increment in the form "
+                         "composition takes them as they are"});
+}
+
 }  // namespace
 
 void check_input(const Parameters& p, Conflicts& conflicts) {
+  check_scan_matching(p, conflicts);
   if (p.input.odometry == "none") {
     check_no_odometry(p, conflicts);
   }

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/Geometry>
 #include <mrpt/obs/CObservation2DRangeScan.h>
 
 #include <libslam/frontend/scan_lines.hpp>
@@ -57,6 +58,7 @@ double ScanLines::read_points(const Scan& scan) {
 
 void ScanLines::extract(const mrpt::obs::CSensoryFrame& frame, std::vector<FeatureBatch>& batches) {
   std::size_t count = 0;
+  surface_.clear();
   for (const auto& any : frame) {
     const auto* scan = dynamic_cast<const Scan*>(any.get());
     if (scan == nullptr || (!sensor_label_.empty() && scan->sensorLabel != sensor_label_)) continue;
@@ -66,6 +68,9 @@ void ScanLines::extract(const mrpt::obs::CSensoryFrame& frame, std::vector<Featu
     batch.clear();
     const double step = read_points(*scan);
     const auto& on_robot = scan->sensorPose;
+    const Eigen::Rotation2Dd turn(on_robot.yaw());
+    for (const BeamPoint& point : points_)
+      surface_.emplace_back(turn * point.p + Eigen::Vector2d(on_robot.x(), on_robot.y()));
     for (const ExtractedLine& line : extraction_.extract(points_, step)) {
       Feature& feature = batch.emplace_back();
       feature.channel = channels_.of(scan->sensorLabel);

@@ -215,6 +215,8 @@ class Run {
     warnings.insert(warnings.end(), about_noise.begin(), about_noise.end());
     fill_timing(summary);
     summary.health.features = pipeline_.frontend().figures();
+    if (const LoopClosure* loops = pipeline_.filter().loop_closure())
+      summary.health.features.merge(loops->figures());
     const Eigen::MatrixXd cov = pipeline_.filter().covariance();
     if (cov.rows() <= kLargestSpectrum && cov.allFinite())
       summary.health.min_eigenvalue =

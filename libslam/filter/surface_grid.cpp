@@ -15,19 +15,30 @@ namespace {
 
 constexpr double kCell = 0.1;               // [m]
 constexpr double kSigma = 0.12;             // of a point from its surface [m]
+constexpr int kSurface = 20;                // larger values belong to a surface
 constexpr double kMargin = 1.0;             // around all points [m]
 constexpr std::array kWidths = {16, 4, 1};  // of blocks [cells]
 constexpr double kTurn = 0.0131;            // from heading to heading [rad]: a cell in 7.6 m
-constexpr double kNearXY = 0.5;             // poses this near are the same place [m]
-constexpr double kNearHeading = 0.1396;     // and this near in heading [rad]
+// A rival may lie where less was seen: it is looked for so far below the margin and judged by what
+// is known there.
+constexpr double kHidden = 0.15;
+constexpr double kMostUnknown = 0.5;
+constexpr std::size_t kMostRivals = 12;
+constexpr double kNearXY = 0.5;          // poses this near are the same place [m]
+constexpr double kNearHeading = 0.1396;  // and this near in heading [rad]
 
 cv::Point cell_of(const Eigen::Vector2d& corner, const Eigen::Vector2d& p) {
   return {static_cast<int>(std::floor((p.x() - corner.x()) / kCell)),
           static_cast<int>(std::floor((p.y() - corner.y()) / kCell))};
 }
 
-bool inside(const cv::Mat1b& raster, int x, int y) {
-  return x >= 0 && y >= 0 && x < raster.cols && y < raster.rows;
+bool inside(const SurfaceGrid::Raster& raster, int x, int y) {
+  return x >= 0 && y >= 0 && x < raster.cols() && y < raster.rows();
+}
+
+/// The same memory.
+cv::Mat1b as_image(SurfaceGrid::Raster& raster) {
+  return {static_cast<int>(raster.rows()), static_cast<int>(raster.cols()), raster.data()};
 }
 
 }  // namespace
@@ -46,31 +57,36 @@ SurfaceGrid::SurfaceGrid(std::span<const SurfaceScan> scans) {
   if (!low.allFinite()) throw std::invalid_argument("a raster of surfaces needs points");
   corner_ = low - Eigen::Vector2d::Constant(kMargin);
   const cv::Point size = cell_of(corner_, high + Eigen::Vector2d::Constant(kMargin));
-  cv::Mat1b empty(size.y + 1, size.x + 1, static_cast<unsigned char>(255));
-  free_ = cv::Mat1b::zeros(empty.rows, empty.cols);
+  draw(scans, size.y + 1, size.x + 1);
+  for (const int width : kWidths) {
+    cv::Mat1b padded;
+    cv::copyMakeBorder(as_image(value_), padded, width, 0, width, 0, cv::BORDER_CONSTANT,
+                       cv::Scalar(0));
+    Bounds& bounds = bounds_.emplace_back(width, Raster(padded.rows, padded.cols));
+    cv::dilate(padded, as_image(bounds.most), cv::Mat1b::ones(width, width), cv::Point(0, 0), 1,
+               cv::BORDER_CONSTANT, cv::Scalar(0));
+  }
+}
+
+void SurfaceGrid::draw(std::span<const SurfaceScan> scans, int rows, int columns) {
+  cv::Mat1b empty(rows, columns, static_cast<unsigned char>(255));
+  free_.setZero(rows, columns);
+  cv::Mat1b free = as_image(free_);
   for (const SurfaceScan& scan : scans)
     for (const Eigen::Vector2d& p : scan.points) {
       const cv::Point cell = cell_of(corner_, p);
-      cv::line(free_, cell_of(corner_, scan.origin), cell, cv::Scalar(1));
+      cv::line(free, cell_of(corner_, scan.origin), cell, cv::Scalar(1));
       empty(cell) = 0;
     }
   cv::Mat1f distance;
   cv::distanceTransform(empty, distance, cv::DIST_L2, cv::DIST_MASK_PRECISE);
-  value_.create(empty.rows, empty.cols);
-  for (int y = 0; y < value_.rows; ++y)
-    for (int x = 0; x < value_.cols; ++x) {
-      const double d = distance(y, x) * kCell / kSigma;
+  value_.resize(rows, columns);
+  for (int y = 0; y < rows; ++y)
+    for (int x = 0; x < columns; ++x) {
+      const double d = static_cast<double>(distance(y, x)) * kCell / kSigma;
       value_(y, x) = static_cast<unsigned char>(std::lround(255.0 * std::exp(-0.5 * d * d)));
-      if (value_(y, x) > 20) free_(y, x) = 0;
+      if (value_(y, x) > kSurface) free_(y, x) = 0;
     }
-  for (const int width : kWidths) {
-    cv::Mat1b padded;
-    cv::copyMakeBorder(value_, padded, width, 0, width, 0, cv::BORDER_CONSTANT, cv::Scalar(0));
-    cv::Mat1b most;
-    cv::dilate(padded, most, cv::Mat1b::ones(width, width), cv::Point(0, 0), 1, cv::BORDER_CONSTANT,
-               cv::Scalar(0));
-    bounds_.push_back({width, most});
-  }
 }
 
 ViewScore SurfaceGrid::score(std::span<const Eigen::Vector2d> view,
@@ -83,10 +99,10 @@ ViewScore SurfaceGrid::score(std::span<const Eigen::Vector2d> view,
       score.unknown += 1.0;
       continue;
     }
-    score.support += value_(cell) / 255.0;
-    if (free_(cell) != 0)
+    score.support += value_(cell.y, cell.x) / 255.0;
+    if (free_(cell.y, cell.x) != 0)
       score.contradicted += 1.0;
-    else if (value_(cell) <= 20)
+    else if (value_(cell.y, cell.x) <= kSurface)
       score.unknown += 1.0;
   }
   const double n = static_cast<double>(view.size());
@@ -125,6 +141,7 @@ void SurfaceGrid::look_into(const Block& block, std::size_t level,
   if (block.sum < survey.cutoff()) return;
   const int width = bounds_[level].width;
   if (width == 1) {
+    if (std::max(std::abs(block.x), std::abs(block.y)) > survey.reach) return;
     survey.shifts.push_back(block);
     if (block.sum > survey.best.sum) survey.best = block;
     return;
@@ -136,6 +153,40 @@ void SurfaceGrid::look_into(const Block& block, std::size_t level,
                 survey);
 }
 
+namespace {
+
+/// Support by what is known; a view that lies on little of it proves nothing.
+double fit(const ViewScore& score) {
+  return score.unknown > kMostUnknown ? 0.0 : score.support / (1.0 - score.unknown);
+}
+
+/// The best shifts away from `best` and from each other, as poses.
+template <class Block, class Turned>
+std::vector<Eigen::Vector3d> rivals(std::vector<Block> shifts, const Block& best,
+                                    const std::vector<Turned>& turned,
+                                    const Eigen::Vector3d& around) {
+  const auto is_near = [&](const Block& a, const Block& b) {
+    return kCell * std::hypot(a.x - b.x, a.y - b.y) <= kNearXY &&
+           std::abs(turned[a.turned].heading - turned[b.turned].heading) <= kNearHeading;
+  };
+  std::stable_sort(shifts.begin(), shifts.end(),
+                   [](const Block& a, const Block& b) { return a.sum > b.sum; });
+  std::vector<Block> apart{best};
+  for (const Block& shift : shifts) {
+    if (apart.size() > kMostRivals) break;
+    if (std::none_of(apart.begin(), apart.end(),
+                     [&](const Block& other) { return is_near(shift, other); }))
+      apart.push_back(shift);
+  }
+  std::vector<Eigen::Vector3d> poses;
+  for (std::size_t i = 1; i < apart.size(); ++i)
+    poses.emplace_back(around.x() + kCell * apart[i].x, around.y() + kCell * apart[i].y,
+                       turned[apart[i].turned].heading);
+  return poses;
+}
+
+}  // namespace
+
 std::optional<SurfaceMatch> SurfaceGrid::search(std::span<const Eigen::Vector2d> view,
                                                 const Eigen::Vector3d& T_grid_view,
                                                 const PoseWindow& window, double min_support,
@@ -144,14 +195,14 @@ std::optional<SurfaceMatch> SurfaceGrid::search(std::span<const Eigen::Vector2d>
   const double full = 255.0 * static_cast<double>(view.size());
   const std::vector<Turned> turned = turn(view, T_grid_view, window.heading);
   const Bounds& coarse = bounds_.front();
-  const int reach = static_cast<int>(std::ceil(window.xy / kCell / coarse.width)) * coarse.width;
   Survey survey;
-  survey.margin = static_cast<int>(margin * full);
+  survey.margin = static_cast<int>((margin + kHidden) * full);
+  survey.reach = static_cast<int>(std::lround(window.xy / kCell));
   survey.best.sum = static_cast<int>(min_support * full);
   std::vector<Block> blocks;
   for (std::size_t k = 0; k < turned.size(); ++k)
-    for (int y = -reach; y < reach; y += coarse.width)
-      for (int x = -reach; x < reach; x += coarse.width)
+    for (int y = -survey.reach; y <= survey.reach; y += coarse.width)
+      for (int x = -survey.reach; x <= survey.reach; x += coarse.width)
         if (const int bound = sum(coarse, turned[k], x, y); bound >= survey.cutoff())
           blocks.push_back({bound, k, x, y});
   std::stable_sort(blocks.begin(), blocks.end(),
@@ -161,18 +212,15 @@ std::optional<SurfaceMatch> SurfaceGrid::search(std::span<const Eigen::Vector2d>
   if (survey.shifts.empty() || std::none_of(survey.shifts.begin(), survey.shifts.end(),
                                             [&](const Block& s) { return s.sum == best.sum; }))
     return std::nullopt;
-  int rival = 0;
-  for (const Block& shift : survey.shifts) {
-    const double apart = kCell * std::hypot(shift.x - best.x, shift.y - best.y);
-    const double turn = std::abs(turned[shift.turned].heading - turned[best.turned].heading);
-    if ((apart > kNearXY || turn > kNearHeading) && shift.sum > rival) rival = shift.sum;
-  }
   SurfaceMatch match;
   match.T_grid_view =
       refine(view, {T_grid_view.x() + kCell * best.x, T_grid_view.y() + kCell * best.y,
                     wrap_angle(turned[best.turned].heading)});
   match.score = score(view, match.T_grid_view);
-  match.rival = rival / full;
+  double rival_fit = 0.0;
+  for (const Eigen::Vector3d& rival : rivals(survey.shifts, best, turned, T_grid_view))
+    rival_fit = std::max(rival_fit, fit(score(view, rival)));
+  match.rival = (1.0 - match.score.unknown) * rival_fit;
   return match;
 }
 

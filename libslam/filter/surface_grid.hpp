@@ -11,10 +11,10 @@
 
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
-#include <opencv2/core/mat.hpp>
 
 namespace libslam {
 
@@ -40,11 +40,14 @@ struct PoseWindow {
 struct SurfaceMatch {
   Eigen::Vector3d T_grid_view;  ///< x [m], y [m], phi [rad]
   ViewScore score;
-  double rival = 0.0;  ///< support of the best pose elsewhere; 0: below the margin
+  double rival = 0.0;  ///< of the best pose elsewhere, as if as much were known there
 };
 
 class SurfaceGrid {
  public:
+  /// Row by row: y, then x.
+  using Raster = Eigen::Matrix<unsigned char, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
   /// Throws std::invalid_argument if there is no point at all.
   explicit SurfaceGrid(std::span<const SurfaceScan> scans);
 
@@ -73,17 +76,21 @@ class SurfaceGrid {
   /// The largest value among `width` x `width` cells that begin at a cell, with a border of as many
   /// cells at the low sides.
   struct Bounds {
+    Bounds(int w, Raster m) : width(w), most(std::move(m)) {}
     int width;
-    cv::Mat1b most;
+    Raster most;
   };
   /// Shifts that come near the best one.
   struct Survey {
     int margin = 0;
+    int reach = 0;  ///< largest shift along x and y [cells]
     Block best{};
     std::vector<Block> shifts;
     int cutoff() const { return best.sum - margin; }
   };
 
+  /// Fills value_ and free_.
+  void draw(std::span<const SurfaceScan> scans, int rows, int columns);
   static int sum(const Bounds& bounds, const Turned& turned, int x, int y);
   double interpolated(std::span<const Eigen::Vector2d> view, const Eigen::Vector3d& pose) const;
   std::vector<Turned> turn(std::span<const Eigen::Vector2d> view, const Eigen::Vector3d& around,
@@ -93,9 +100,9 @@ class SurfaceGrid {
                  Survey& survey) const;
 
   Eigen::Vector2d corner_ = Eigen::Vector2d::Zero();  // of cell (0, 0)
-  cv::Mat1b value_;                                   // 0..255
+  Raster value_;                                      // 0..255
   std::vector<Bounds> bounds_;                        // widest first, cells last
-  cv::Mat1b free_;                                    // beams went through
+  Raster free_;                                       // beams went through
 };
 
 }  // namespace libslam

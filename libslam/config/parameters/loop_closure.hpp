@@ -9,7 +9,7 @@ namespace libslam {
 struct LoopClosureParameters {
   bool enabled = false;
   double min_way = 15.0;
-  double window_xy = 5.0;
+  double window_xy = 6.0;
   double window_heading_deg = 20.0;
   double min_score = 0.55;
   double min_margin = 0.1;

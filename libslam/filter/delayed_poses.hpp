@@ -8,6 +8,7 @@
 // steps in between. Source: Eustice, Singh & Leonard, "Exactly sparse delayed-state filters for
 // view-based SLAM", IEEE Trans. Robotics 22(6), 2006 (the augmentation, in covariance form here).
 
+#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -33,6 +34,12 @@ class DelayedPoses {
   void remember(GaussianState& state, BlockId pose, double time);
   /// The robot was put elsewhere: the next pose is kept, and nothing is spread over the jump.
   void restart() { restarted_ = true; }
+
+  /// The pose that was kept last; nothing if the robot was put elsewhere since.
+  std::optional<BlockId> latest() const {
+    if (restarted_) return std::nullopt;
+    return blocks_.back();
+  }
 
   /// The remembered steps, given everything that the filter knows now.
   Trajectory path(const GaussianState& state) const;

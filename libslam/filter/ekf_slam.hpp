@@ -24,6 +24,7 @@
 #include <libslam/filter/iterated_update.hpp>
 #include <libslam/filter/landmark_merging.hpp>
 #include <libslam/filter/linearizer.hpp>
+#include <libslam/filter/loop_closure.hpp>
 #include <libslam/filter/map_start.hpp>
 #include <libslam/filter/selected_pairs.hpp>
 #include <libslam/measurement/measurement_model.hpp>
@@ -53,6 +54,7 @@ struct EkfSlamParts {
   std::optional<DelayedPoses> delayed;  ///< absent: the past is forgotten
   LandmarkRegistry registry{1, 0};
   std::optional<LandmarkMerging> merging;       ///< absent: landmarks stay apart
+  std::optional<LoopClosure> loop_closure;      ///< absent: association alone closes loops
   std::optional<BuildingPrior> building_prior;  ///< absent: walls may run in any direction
   std::optional<MapStart> map;  ///< to start in; needs no point of linearization but the estimate
   BlockVector start;  ///< start pose, storage of the motion model's pose; empty: the origin
@@ -88,6 +90,12 @@ class EkfSlam {
   /// The end of a step at `time` [s]: its pose becomes part of the smoothed path. Nothing where the
   /// past is forgotten.
   void remember_pose(double time);
+  /// What a scanner sees from the present pose, `points` [m] in the frame of the robot, after the
+  /// pose was remembered. True: a loop was closed. Nothing without loop closure.
+  bool look_for_loops(std::span<const Eigen::Vector2d> points);
+  const LoopClosure* loop_closure() const {
+    return parts_.loop_closure ? &*parts_.loop_closure : nullptr;
+  }
   /// The path of all steps remembered, given everything known now; nothing where the past is
   /// forgotten.
   std::optional<Trajectory> smoothed_path() const;

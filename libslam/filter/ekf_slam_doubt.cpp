@@ -42,6 +42,7 @@ void EkfSlam::respond(std::span<const Feature> features, UpdateOutcome& outcome)
 
 void EkfSlam::start_again_at(const FoundPose& found, std::span<const Feature> features) {
   if (parts_.delayed) parts_.delayed->restart();
+  if (parts_.loop_closure) parts_.loop_closure->restart();
   ekf_.propagate(state_, {pose_, found.T_world_robot, {}, found.cov_uninformed});
   verdicts_.assign(features.size(), {});
   for (const auto& [feature, landmark] : found.pairs)

@@ -1,3 +1,5 @@
+#include <limits>
+
 #include <libslam/filter/landmark_merging.hpp>
 
 namespace libslam {
@@ -5,11 +7,22 @@ namespace libslam {
 int LandmarkMerging::update(GaussianState& state, Ekf& ekf, BlockId pose,
                             const MeasurementModel& model, LandmarkRegistry& registry) {
   if (++updates_ % options_.every != 0) return 0;
+  return pass(state, ekf, pose, model, registry, options_.every);
+}
+
+int LandmarkMerging::merge_all(GaussianState& state, Ekf& ekf, BlockId pose,
+                               const MeasurementModel& model, LandmarkRegistry& registry) {
+  return pass(state, ekf, pose, model, registry, std::numeric_limits<int>::max());
+}
+
+int LandmarkMerging::pass(GaussianState& state, Ekf& ekf, BlockId pose,
+                          const MeasurementModel& model, LandmarkRegistry& registry,
+                          int most_unseen) {
   const int before = merged_;
   std::size_t i = 0;
   while (i < registry.size()) {
     bool changed = false;
-    if (registry.landmarks()[i].unseen <= options_.every)
+    if (registry.landmarks()[i].unseen <= most_unseen)
       for (std::size_t k = 0; k < registry.size() && !changed; ++k)
         changed = k != i && merge(state, ekf, pose, model, registry, i, k);
     // After a merge landmarks have moved up, and the one that is left may fit another.

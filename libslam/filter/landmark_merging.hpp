@@ -25,9 +25,15 @@ class LandmarkMerging {
   int update(GaussianState& state, Ekf& ekf, BlockId pose, const MeasurementModel& model,
              LandmarkRegistry& registry);
 
+  /// A pass at once, over landmarks whenever they were seen.
+  int merge_all(GaussianState& state, Ekf& ekf, BlockId pose, const MeasurementModel& model,
+                LandmarkRegistry& registry);
+
   int merged() const { return merged_; }
 
  private:
+  int pass(GaussianState& state, Ekf& ekf, BlockId pose, const MeasurementModel& model,
+           LandmarkRegistry& registry, int most_unseen);
   bool merge(GaussianState& state, Ekf& ekf, BlockId pose, const MeasurementModel& model,
              LandmarkRegistry& registry, std::size_t first, std::size_t second);
 

@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <map>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,9 @@ class Frontend {
   /// Overwrites `batches`.
   virtual void extract(const mrpt::obs::CSensoryFrame& frame,
                        std::vector<FeatureBatch>& batches) = 0;
+  /// Where beams of the last frame that was extracted ended, in the frame of the robot [m]; empty
+  /// without such a sensor.
+  virtual std::span<const Eigen::Vector2d> surface_points() const { return {}; }
   /// False if a frame can be left out without harm to what is made of the others.
   virtual bool needs_every_frame() const { return true; }
   /// Measurements left out so far because they were unusable.

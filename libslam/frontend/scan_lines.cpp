@@ -1,3 +1,4 @@
+#include <Eigen/Geometry>
 #include <mrpt/obs/CObservation2DRangeScan.h>
 
 #include <libslam/frontend/scan_lines.hpp>
@@ -25,6 +26,7 @@ bool ScanLines::accepts(const Scan& scan) {
 
 void ScanLines::extract(const mrpt::obs::CSensoryFrame& frame, std::vector<FeatureBatch>& batches) {
   std::size_t count = 0;
+  surface_.clear();
   for (const auto& any : frame) {
     const auto* scan = dynamic_cast<const Scan*>(any.get());
     if (scan == nullptr || (!sensor_label_.empty() && scan->sensorLabel != sensor_label_)) continue;
@@ -34,6 +36,9 @@ void ScanLines::extract(const mrpt::obs::CSensoryFrame& frame, std::vector<Featu
     batch.clear();
     unusable_ += read_beam_points(*scan, {parameters_.min_range, parameters_.max_range}, points_);
     const auto& on_robot = scan->sensorPose;
+    const Eigen::Rotation2Dd turn(on_robot.yaw());
+    for (const BeamPoint& point : points_)
+      surface_.emplace_back(turn * point.p + Eigen::Vector2d(on_robot.x(), on_robot.y()));
     for (const ExtractedLine& line : extraction_.extract(points_, beam_spacing(*scan))) {
       Feature& feature = batch.emplace_back();
       feature.channel = channels_.of(scan->sensorLabel);

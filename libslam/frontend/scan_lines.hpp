@@ -24,6 +24,7 @@ class ScanLines final : public Frontend {
   /// Scans of a tilted sensor and beams that are not finite count as unusable; beams without an
   /// echo or beyond the ranges of the parameters are left out in silence.
   void extract(const mrpt::obs::CSensoryFrame& frame, std::vector<FeatureBatch>& batches) override;
+  std::span<const Eigen::Vector2d> surface_points() const override { return surface_; }
   std::int64_t unusable() const override { return unusable_; }
   std::vector<std::string> warnings() const override { return warnings_; }
   /// scans, mean_lines.
@@ -38,6 +39,7 @@ class ScanLines final : public Frontend {
   ChannelNumbers channels_;
   LineExtraction extraction_;
   std::vector<BeamPoint> points_;
+  std::vector<Eigen::Vector2d> surface_;
   std::vector<std::string> warnings_;
   std::int64_t unusable_ = 0, scans_ = 0, lines_ = 0;
 };

@@ -188,6 +188,17 @@ EkfSlamParts make_filter_parts(const Parameters& p, const TrueState* truth) {
   if (p.filter.delayed_pose_distance > 0.0)
     parts.delayed.emplace(DelayedPoseSpacing{p.filter.delayed_pose_distance,
                                              to_radians(p.filter.delayed_pose_turn_deg)});
+  const LoopClosureParameters& loop = p.filter.loop_closure;
+  if (loop.enabled)
+    parts.loop_closure.emplace(
+        LoopClosureOptions{loop.min_way,
+                           {loop.window_xy, to_radians(loop.window_heading_deg)},
+                           loop.min_score,
+                           loop.min_margin,
+                           loop.max_contradiction,
+                           chi_square_quantile(loop.joint_probability, 3),
+                           loop.confirmations,
+                           loop.confirmation_distance});
   const BlockSpec pose = parts.motion->pose_spec();
   parts.map = make_map_start(p.map);
   if (parts.map && !parts.map->at_saved_pose) parts.start = start_pose(pose, p.map);

@@ -1,6 +1,7 @@
 #include <optional>
 #include <utility>
 
+#include <libslam/data/step_events.hpp>
 #include <libslam/pipeline/factory.hpp>
 #include <libslam/pipeline/pipeline.hpp>
 
@@ -101,6 +102,7 @@ void Pipeline::extract(const LogStep& step) {
 
 StepRecord Pipeline::update(const LogStep& step) {
   last_update_ = {};
+  bool updated = false;
   if (step.frame) {
     extract(step);
     if (!batches_.empty() && schedule_.due(step.time, planar_pose(), count_features(batches_)))
@@ -108,9 +110,12 @@ StepRecord Pipeline::update(const LogStep& step) {
         const UpdateOutcome outcome = filter_.update(batch);
         if (observer_ != nullptr) observer_->on_update(batch, outcome);
         last_update_ += outcome;
+        updated = true;
       }
   }
   filter_.remember_pose(step.time);
+  if (updated && filter_.look_for_loops(frontend_->surface_points()))
+    add_events(last_update_.event, "loop_closed");
   StepRecord record = estimate();
   record.index = step.index;
   record.time = step.time;

@@ -217,6 +217,8 @@ class Run {
     summary.health.features = pipeline_.frontend().figures();
     if (const MatchedOdometry* matched = pipeline_.matched_odometry())
       summary.health.features.merge(matched->figures());
+    if (const LoopClosure* loops = pipeline_.filter().loop_closure())
+      summary.health.features.merge(loops->figures());
     const Eigen::MatrixXd cov = pipeline_.filter().covariance();
     if (cov.rows() <= kLargestSpectrum && cov.allFinite())
       summary.health.min_eigenvalue =

@@ -9,19 +9,20 @@ namespace libslam {
 struct LoopClosureParameters {
   bool enabled = false;
   double min_way = 15.0;
-  double window_xy = 4.0;
+  double window_xy = 6.0;
   double window_heading_deg = 20.0;
-  double min_score = 0.6;
+  double min_score = 0.55;
   double min_margin = 0.1;
-  int min_pairs = 3;
+  double max_contradiction = 0.1;
   double joint_probability = 0.99;
   int confirmations = 2;
+  double confirmation_distance = 2.0;
 
   void describe(auto& v) {
     v.value("enabled", enabled,
             {"",
-             "Search the walls of the map that should be in view again where the robot comes back "
-             "and association does not recognize them."});
+             "Search the place in the old map where the robot comes back and association does not "
+             "recognize the walls. Needs delayed poses and a front-end of laser scans."});
     v.value("min_way", min_way,
             {"m", "A place is an old one if it was left behind by so long a way.", 0});
     v.value("window_xy", window_xy,
@@ -32,13 +33,15 @@ struct LoopClosureParameters {
             {"1", "Least share of the view that must lie on the old map.", 0, 1});
     v.value("min_margin", min_margin,
             {"1", "A pose elsewhere in the window must explain so much less of the view.", 0, 1});
-    v.value("min_pairs", min_pairs,
-            {"1", "Fewest pairs of lines, not all parallel, that must agree.", 2, 100});
+    v.value("max_contradiction", max_contradiction,
+            {"1", "Largest share of the view where old beams went through.", 0, 1});
     v.value(
         "joint_probability", joint_probability,
-        {"1", "They agree if their joint misfit is below this chi-square probability.", 1e-6, 1});
+        {"1", "Two matches agree if their misfit is below this chi-square probability.", 1e-6, 1});
     v.value("confirmations", confirmations,
-            {"1", "Searches from different places that must find the same correction.", 1, 100});
+            {"1", "Views from different places that must find the same correction.", 1, 100});
+    v.value("confirmation_distance", confirmation_distance,
+            {"m", "These places are at least so far apart on the way.", 0});
   }
 };
 

@@ -16,7 +16,6 @@ struct ScanLinesParameters {
   double break_angle_deg = 10.0;
   double split_distance = 0.06;
   double merge_gap = 1.0;
-  double sweep_duration = 0.0;
 
   void describe(auto& v) {
     v.value("sigma_range", sigma_range, {"m", "Standard deviation of the range of a beam.", 1e-6});
@@ -49,11 +48,6 @@ struct ScanLinesParameters {
              "Segments on one line become one feature across a gap up to this (doors, people in "
              "front of a wall).",
              0});
-    v.value("sweep_duration", sweep_duration,
-            {"s",
-             "Time from the first to the last beam of a scan: the motion of the robot in the "
-             "meantime is taken out. 0: the beams are taken as simultaneous.",
-             0, 10});
   }
 };
 

@@ -15,6 +15,14 @@ void check_filter(const Parameters& p, TruthAccess truth, Conflicts& conflicts) 
     conflicts.push_back({{"filter.update_linearizations", "measurement.model"},
                          "only sightings of landmarks are iterated"});
   }
+  if (f.loop_closure.enabled && !(f.delayed_pose_distance > 0.0)) {
+    conflicts.push_back({{"filter.loop_closure.enabled", "filter.delayed_pose_distance"},
+                         "a closed loop is a measurement between poses of the past"});
+  }
+  if (f.loop_closure.enabled && p.frontend.source != "scan_lines") {
+    conflicts.push_back({{"filter.loop_closure.enabled", "frontend.source"},
+                         "old places are found again by laser scans"});
+  }
   if (f.linearization == "estimate") {
     return;
   }

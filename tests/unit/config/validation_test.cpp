@@ -255,6 +255,29 @@ std::string name_of(const testing::TestParamInfo<Case>& info) {
 }
 
 const Case kFilter[] = {
+    {"loops_of_scans",
+     [](Parameters& p) {
+       p.frontend.source = "scan_lines";
+       p.measurement.model = "line";
+       p.association.method = "sequential_compatibility";
+       p.filter.delayed_pose_distance = 2.0;
+       p.filter.loop_closure.enabled = true;
+     },
+     {}},
+    {"loops_without_a_past",
+     [](Parameters& p) {
+       p.frontend.source = "scan_lines";
+       p.measurement.model = "line";
+       p.association.method = "sequential_compatibility";
+       p.filter.loop_closure.enabled = true;
+     },
+     {"filter.loop_closure.enabled", "filter.delayed_pose_distance"}},
+    {"loops_without_scans",
+     [](Parameters& p) {
+       p.filter.delayed_pose_distance = 2.0;
+       p.filter.loop_closure.enabled = true;
+     },
+     {"filter.loop_closure.enabled", "frontend.source"}},
     {"first_estimate_in_the_standard_frame",
      [](Parameters& p) {
        p.filter.error_frame = "standard";

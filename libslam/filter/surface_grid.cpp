@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <stdexcept>
 
 #include <opencv2/imgproc.hpp>
@@ -13,12 +14,12 @@ namespace libslam {
 
 namespace {
 
-constexpr double kCell = 0.1;               // [m]
-constexpr double kSigma = 0.12;             // of a point from its surface [m]
-constexpr int kSurface = 20;                // larger values belong to a surface
-constexpr double kMargin = 1.0;             // around all points [m]
-constexpr std::array kWidths = {16, 4, 1};  // of blocks [cells]
-constexpr double kTurn = 0.0131;            // from heading to heading [rad]: a cell in 7.6 m
+constexpr double kCell = 0.1;                     // [m]
+constexpr double kSigma = 0.12;                   // of a point from its surface [m]
+constexpr int kSurface = 20;                      // larger values belong to a surface
+constexpr double kMargin = 1.0;                   // around all points [m]
+constexpr std::array kWidths = {16, 8, 4, 2, 1};  // of blocks [cells]
+constexpr double kTurn = 0.0131;                  // from heading to heading [rad]: a cell in 7.6 m
 // A rival may lie where less was seen: it is looked for so far below the margin and judged by what
 // is known there.
 constexpr double kHidden = 0.15;
@@ -109,25 +110,31 @@ ViewScore SurfaceGrid::score(std::span<const Eigen::Vector2d> view,
   return {score.support / n, score.contradicted / n, score.unknown / n};
 }
 
-int SurfaceGrid::sum(const Bounds& bounds, const Turned& turned, int x, int y) {
-  int sum = 0;
+int SurfaceGrid::sum(const Bounds& bounds, const Turned& turned, int x, int y, int needed) {
+  int missed = 255 * static_cast<int>(turned.cells.size()) - needed;
   for (const Eigen::Vector2i& cell : turned.cells) {
     const int column = cell.x() + x + bounds.width, row = cell.y() + y + bounds.width;
-    if (inside(bounds.most, column, row)) sum += bounds.most(row, column);
+    missed -= inside(bounds.most, column, row) ? 255 - bounds.most(row, column) : 255;
+    if (missed < 0) return -1;
   }
-  return sum;
+  return needed + missed;
 }
 
 std::vector<SurfaceGrid::Turned> SurfaceGrid::turn(std::span<const Eigen::Vector2d> view,
                                                    const Eigen::Vector3d& around,
                                                    double window) const {
   std::vector<Turned> all;
+  // In an order that leaps over the view, so that a sum of its first points tells much of the
+  // whole.
+  std::size_t leap = std::max<std::size_t>(1, view.size() * 5 / 8);
+  while (std::gcd(leap, view.size()) != 1) ++leap;
   const int steps = static_cast<int>(std::ceil(window / kTurn));
   for (int k = -steps; k <= steps; ++k) {
     Turned& turned = all.emplace_back();
     turned.heading = around.z() + k * kTurn;
     turned.cells.reserve(view.size());
-    for (const Eigen::Vector2d& p : view) {
+    for (std::size_t i = 0; i < view.size(); ++i) {
+      const Eigen::Vector2d& p = view[i * leap % view.size()];
       const cv::Point cell =
           cell_of(corner_, transform_point({around.x(), around.y(), turned.heading}, p));
       turned.cells.emplace_back(cell.x, cell.y);
@@ -143,14 +150,15 @@ void SurfaceGrid::look_into(const Block& block, std::size_t level,
   if (width == 1) {
     if (std::max(std::abs(block.x), std::abs(block.y)) > survey.reach) return;
     survey.shifts.push_back(block);
-    if (block.sum > survey.best.sum) survey.best = block;
+    if (!survey.found || block.sum > survey.best.sum) survey.best = block;
+    survey.found = true;
     return;
   }
   const Bounds& finer = bounds_[level + 1];
   for (int y = block.y; y < block.y + width; y += finer.width)
     for (int x = block.x; x < block.x + width; x += finer.width)
-      look_into({sum(finer, turned[block.turned], x, y), block.turned, x, y}, level + 1, turned,
-                survey);
+      look_into({sum(finer, turned[block.turned], x, y, survey.cutoff()), block.turned, x, y},
+                level + 1, turned, survey);
 }
 
 namespace {
@@ -187,6 +195,20 @@ std::vector<Eigen::Vector3d> rivals(std::vector<Block> shifts, const Block& best
 
 }  // namespace
 
+void SurfaceGrid::survey(const std::vector<Turned>& turned, Survey& survey) const {
+  const Bounds& coarse = bounds_.front();
+  std::vector<Block> blocks;
+  for (std::size_t k = 0; k < turned.size(); ++k)
+    for (int y = -survey.reach; y <= survey.reach; y += coarse.width)
+      for (int x = -survey.reach; x <= survey.reach; x += coarse.width)
+        if (const int bound = sum(coarse, turned[k], x, y, survey.cutoff());
+            bound >= survey.cutoff())
+          blocks.push_back({bound, k, x, y});
+  std::stable_sort(blocks.begin(), blocks.end(),
+                   [](const Block& a, const Block& b) { return a.sum > b.sum; });
+  for (const Block& block : blocks) look_into(block, 0, turned, survey);
+}
+
 std::optional<SurfaceMatch> SurfaceGrid::search(std::span<const Eigen::Vector2d> view,
                                                 const Eigen::Vector3d& T_grid_view,
                                                 const PoseWindow& window, double min_support,
@@ -194,31 +216,23 @@ std::optional<SurfaceMatch> SurfaceGrid::search(std::span<const Eigen::Vector2d>
   if (view.empty()) return std::nullopt;
   const double full = 255.0 * static_cast<double>(view.size());
   const std::vector<Turned> turned = turn(view, T_grid_view, window.heading);
-  const Bounds& coarse = bounds_.front();
-  Survey survey;
-  survey.margin = static_cast<int>((margin + kHidden) * full);
-  survey.reach = static_cast<int>(std::lround(window.xy / kCell));
-  survey.best.sum = static_cast<int>(min_support * full);
-  std::vector<Block> blocks;
-  for (std::size_t k = 0; k < turned.size(); ++k)
-    for (int y = -survey.reach; y <= survey.reach; y += coarse.width)
-      for (int x = -survey.reach; x <= survey.reach; x += coarse.width)
-        if (const int bound = sum(coarse, turned[k], x, y); bound >= survey.cutoff())
-          blocks.push_back({bound, k, x, y});
-  std::stable_sort(blocks.begin(), blocks.end(),
-                   [](const Block& a, const Block& b) { return a.sum > b.sum; });
-  for (const Block& block : blocks) look_into(block, 0, turned, survey);
-  const Block& best = survey.best;
-  if (survey.shifts.empty() || std::none_of(survey.shifts.begin(), survey.shifts.end(),
-                                            [&](const Block& s) { return s.sum == best.sum; }))
-    return std::nullopt;
+  Survey near;
+  near.reach = static_cast<int>(std::lround(window.xy / kCell));
+  near.best.sum = static_cast<int>(min_support * full);
+  survey(turned, near);
+  if (!near.found) return std::nullopt;
+  // Rivals are many more than what may be the best one: a second survey, where there is one.
+  const Block best = near.best;
+  near.shifts.clear();
+  near.margin = static_cast<int>((margin + kHidden) * full);
+  survey(turned, near);
   SurfaceMatch match;
   match.T_grid_view =
       refine(view, {T_grid_view.x() + kCell * best.x, T_grid_view.y() + kCell * best.y,
                     wrap_angle(turned[best.turned].heading)});
   match.score = score(view, match.T_grid_view);
   double rival_fit = 0.0;
-  for (const Eigen::Vector3d& rival : rivals(survey.shifts, best, turned, T_grid_view))
+  for (const Eigen::Vector3d& rival : rivals(near.shifts, best, turned, T_grid_view))
     rival_fit = std::max(rival_fit, fit(score(view, rival)));
   match.rival = (1.0 - match.score.unknown) * rival_fit;
   return match;

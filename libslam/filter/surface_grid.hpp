@@ -84,20 +84,24 @@ class SurfaceGrid {
   struct Survey {
     int margin = 0;
     int reach = 0;  ///< largest shift along x and y [cells]
-    Block best{};
+    Block best{};   ///< before one is found, the sum that it needs
+    bool found = false;
     std::vector<Block> shifts;
     int cutoff() const { return best.sum - margin; }
   };
 
   /// Fills value_ and free_.
   void draw(std::span<const SurfaceScan> scans, int rows, int columns);
-  static int sum(const Bounds& bounds, const Turned& turned, int x, int y);
+  /// Of all points of the view; -1 where that is less than `needed`.
+  static int sum(const Bounds& bounds, const Turned& turned, int x, int y, int needed);
   double interpolated(std::span<const Eigen::Vector2d> view, const Eigen::Vector3d& pose) const;
   std::vector<Turned> turn(std::span<const Eigen::Vector2d> view, const Eigen::Vector3d& around,
                            double window) const;
   /// Looks into `block`, whose shifts are bounded at `level`, where that may be worth it.
   void look_into(const Block& block, std::size_t level, const std::vector<Turned>& turned,
                  Survey& survey) const;
+  /// All shifts within the cutoff; `survey.best` may be known before.
+  void survey(const std::vector<Turned>& turned, Survey& survey) const;
 
   Eigen::Vector2d corner_ = Eigen::Vector2d::Zero();  // of cell (0, 0)
   Raster value_;                                      // 0..255

@@ -16,18 +16,6 @@ void check_upkeep(const Parameters& p, bool lines, Conflicts& conflicts) {
     conflicts.push_back({{"association.merge_every", "measurement.model"},
                          "only lines are told by themselves whether two of them are one"});
   }
-  if (!p.filter.loop_closure.enabled) {
-    return;
-  }
-  if (!lines) {
-    conflicts.push_back({{"filter.loop_closure.enabled", "measurement.model"},
-                         "loops are closed by the walls of the map; take the model line"});
-  }
-  if (!(p.filter.delayed_pose_distance > 0.0)) {
-    conflicts.push_back({{"filter.loop_closure.enabled", "filter.delayed_pose_distance"},
-                         "a loop that is closed bends the path behind it, which takes poses of the "
-                         "past; keep one every metre or so"});
-  }
 }
 
 void check_line_policies(const Parameters& p, Conflicts& conflicts) {

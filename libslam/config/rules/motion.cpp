@@ -18,7 +18,7 @@ struct CalibrationEntry {
 std::array<CalibrationEntry, 11> list_calibration(const CalibrationParameters& c) {
   return {{{"scale_left", c.scale_left, true, false, true, true, false},
            {"scale_right", c.scale_right, true, false, true, true, false},
-           {"track_width", c.track_width, true, false, true, true, false},
+           {"track_width", c.track_width, true, false, true, false, false},
            {"scale_speed", c.scale_speed, true, true, false, true, true},
            {"scale_steering", c.scale_steering, true, false, false, true, false},
            {"bias_steering", c.bias_steering, false, false, false, true, false},

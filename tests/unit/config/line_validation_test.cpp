@@ -95,11 +95,7 @@ TEST(LineValidation, PointsHaveNoneOfTheirUpkeep) {
   const std::pair<const char*, std::function<void(Parameters&)>> cases[] = {
       {"filter.building_prior.enabled",
        [](Parameters& p) { p.filter.building_prior.enabled = true; }},
-      {"association.merge_every", [](Parameters& p) { p.association.merge_every = 5; }},
-      {"filter.loop_closure.enabled", [](Parameters& p) {
-         p.filter.loop_closure.enabled = true;
-         p.filter.delayed_pose_distance = 1.0;
-       }}};
+      {"association.merge_every", [](Parameters& p) { p.association.merge_every = 5; }}};
   for (const auto& [key, change] : cases) {
     Parameters p;
     change(p);

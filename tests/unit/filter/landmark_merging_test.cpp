@@ -13,16 +13,20 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-/// Lines of a map, independent of each other, with errors of 1 cm and .01 rad.
+/// Lines of a map, independent of each other, with errors of 1 cm and .01 rad at their `place`
+/// along the line.
 class Map {
  public:
   Map() {
     pose_ = state.add({"pose", Chart::kSE2, 3, WorldRole::kPose}, Eigen::Vector3d(1, 2, 0.5),
                       1e-4 * Eigen::Matrix3d::Identity());
   }
-  void add(double alpha, double r, const Extent& extent, int sightings = 1) {
-    const BlockId block = state.add({"", Chart::kLine, 2, WorldRole::kLine},
-                                    Eigen::Vector2d(alpha, r), 1e-4 * Eigen::Matrix2d::Identity());
+  void add(double alpha, double r, const Extent& extent, int sightings = 1, double place = 0.0) {
+    Eigen::Matrix2d to_foot;
+    to_foot << 1.0, 0.0, place, 1.0;
+    const BlockId block =
+        state.add({"", Chart::kLine, 2, WorldRole::kLine}, Eigen::Vector2d(alpha, r),
+                  1e-4 * to_foot * to_foot.transpose());
     registry.add(block, kNoIdentity, nullptr, extent);
     while (--sightings > 0) registry.record_sighting(registry.size() - 1);
   }
@@ -104,12 +108,13 @@ TEST(LandmarkMerging, LinesAreComparedWhereTheyWereSeen) {
   const auto through = [](double alpha) {  // r of a line through (5, kPlace)
     return 5.0 * std::cos(alpha) + kPlace * std::sin(alpha);
   };
+  const Extent part{kPlace - 1, kPlace + 1, 0.1, 0.1};
   Map same, other;
-  same.add(0.0, through(0.0), {kPlace - 1, kPlace + 1, 0.1, 0.1});
-  same.add(0.02, through(0.02), {kPlace - 1, kPlace + 1, 0.1, 0.1});
+  same.add(0.0, through(0.0), part, 1, kPlace);
+  same.add(0.02, through(0.02), part, 1, kPlace);
   EXPECT_EQ(same.merge(), 1);
-  other.add(0.0, 5.0, {kPlace - 1, kPlace + 1, 0.1, 0.1});
-  other.add(0.02, 5.0, {kPlace - 1, kPlace + 1, 0.1, 0.1});  // 2 m beside it there
+  other.add(0.0, 5.0, part, 1, kPlace);
+  other.add(0.02, 5.0, part, 1, kPlace);  // 2 m beside it there
   EXPECT_EQ(other.merge(), 0);
 }
 

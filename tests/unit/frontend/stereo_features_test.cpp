@@ -240,7 +240,8 @@ TEST(StereoFeatures, BadInputIsCountedAndNamed) {
   expect("right image: cannot be read", [](Pair& p) { p.imageRight = mrpt::img::CImage(); });
   expect("another size",
          [](Pair& p) { p.imageRight = image_of([](int, int) { return 0.0; }, 100, 100); });
-  expect("/nowhere/left.png", [](Pair& p) { p.imageLeft.setExternalStorage("/nowhere/left.png"); });
+  expect("folder of the images is missing: /nowhere",
+         [](Pair& p) { p.imageLeft.setExternalStorage("/nowhere/left.png"); });
   expect("baseline -0.2", [](Pair& p) {
     p.rightCameraPose = mrpt::poses::CPose3DQuat(mrpt::poses::CPose3D(-0.2, 0, 0, 0, 0, 0));
   });

@@ -54,8 +54,12 @@ TEST(MendedClock, RandomDelaysNeverReorderAndTouchOnlyLateEntries) {
   const auto out = mended(stamps);
   ASSERT_EQ(out.size(), truth.size());
   for (std::size_t k = 0; k < out.size(); ++k) {
-    if (k > 0) EXPECT_GE(out[k], out[k - 1]) << k;
-    if (stamps[k] == truth[k]) EXPECT_EQ(out[k], truth[k]) << k;
+    if (k > 0) {
+      EXPECT_GE(out[k], out[k - 1]) << k;
+    }
+    if (stamps[k] == truth[k]) {
+      EXPECT_EQ(out[k], truth[k]) << k;
+    }
     EXPECT_LE(out[k], stamps[k]) << k;
   }
 }

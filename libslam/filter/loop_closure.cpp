@@ -28,7 +28,7 @@ constexpr double kSigmaMutualXY = 0.1;                                  // [m]
 constexpr double kSigmaMutualHeading = 1.0 * std::numbers::pi / 180.0;  // [rad]
 constexpr int kLinearizations = 10;
 // Most stretches that a view is searched in, and where it fits another one as it is.
-constexpr std::size_t kSearches = 3, kSearchesInPlace = 1;
+constexpr std::size_t kSearches = 2, kSearchesInPlace = 1;
 
 bool is_small(const Eigen::Vector3d& correction) {
   return correction.head<2>().norm() < kInPlaceXY && std::abs(correction.z()) < kInPlaceHeading;
@@ -92,13 +92,26 @@ bool LoopClosure::in_place(const SurfaceGrid& raster, std::span<const Eigen::Vec
          raster.score(view, close_by).support >= options_.min_support + kInPlaceSupport;
 }
 
-bool LoopClosure::acceptable(const SurfaceMatch& match) {
+std::optional<LoopMatch> LoopClosure::match(std::span<const Eigen::Vector2d> view,
+                                            const SurfaceGrid& raster, LoopMatch there) {
+  ++counts_.searches;
+  const auto usable = [&](const SurfaceMatch& match) {
+    return match.score.contradicted <= options_.max_contradicted &&
+           !is_small(relative_pose(there.T_old_new, match.T_grid_view));
+  };
+  const auto found = raster.search(view, there.T_old_new, options_.window, options_.min_support,
+                                   options_.min_margin, usable);
+  if (!found) return std::nullopt;
   ++counts_.matches;
-  const bool ambiguous = match.score.support - match.rival < options_.min_margin;
-  const bool contradicted = match.score.contradicted > options_.max_contradicted;
-  if (ambiguous) ++counts_.ambiguous;
-  if (contradicted) ++counts_.contradicted;
-  return !ambiguous && !contradicted;
+  if (found->score.contradicted > options_.max_contradicted) ++counts_.contradicted;
+  if (!usable(*found)) return std::nullopt;
+  if (found->score.support - found->rival < options_.min_margin) {
+    ++counts_.ambiguous;
+    return std::nullopt;
+  }
+  there.T_estimate_match = relative_pose(there.T_old_new, found->T_grid_view);
+  there.T_old_new = found->T_grid_view;
+  return there;
 }
 
 std::vector<LoopMatch> LoopClosure::find(const GaussianState& state) {
@@ -126,13 +139,9 @@ std::vector<LoopMatch> LoopClosure::find(const GaussianState& state) {
     const std::size_t old = path_.stretches()[candidate.stretch].middle();
     const Eigen::Vector3d T_old_new =
         relative_pose(places[old].T_world_place(state), places[here].T_world_place(state));
-    ++counts_.searches;
-    const auto match =
-        grid(state, candidate.stretch)
-            .search(view, T_old_new, options_.window, options_.min_support, options_.min_margin);
-    if (match && acceptable(*match))
-      found.push_back(
-          {old, here, match->T_grid_view, relative_pose(T_old_new, match->T_grid_view)});
+    if (const auto there =
+            match(view, grid(state, candidate.stretch), {old, here, T_old_new, T_old_new}))
+      found.push_back(*there);
   }
   return found;
 }
@@ -193,10 +202,8 @@ bool LoopClosure::look(GaussianState& state, Ekf& ekf, BlockId pose, BlockId kep
   });
   std::vector<LoopMatch> best;
   for (const LoopMatch& match : find(state)) {
-    if (!is_small(match.T_estimate_match)) {
-      std::vector<LoopMatch> together = agreeing(state, match);
-      if (together.size() > best.size()) best = std::move(together);
-    }
+    std::vector<LoopMatch> together = agreeing(state, match);
+    if (together.size() > best.size()) best = std::move(together);
     pending_.push_back(match);
   }
   return best.size() >= static_cast<std::size_t>(options_.confirmations) &&

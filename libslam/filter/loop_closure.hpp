@@ -14,6 +14,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -40,7 +41,7 @@ struct LoopClosureOptions {
 struct LoopMatch {
   std::size_t old_place = 0, new_place = 0;  ///< of PathMemory::places
   Eigen::Vector3d T_old_new;                 ///< x [m], y [m], phi [rad]
-  Eigen::Vector3d T_estimate_match;          ///< the correction that it asks for
+  Eigen::Vector3d T_estimate_match;          ///< the correction that it asks for, not a small one
 };
 
 /// What became of the searches.
@@ -91,7 +92,10 @@ class LoopClosure {
   std::vector<LoopMatch> find(const GaussianState& state);
   bool in_place(const SurfaceGrid& raster, std::span<const Eigen::Vector2d> view,
                 const Eigen::Vector3d& T_old_new) const;
-  bool acceptable(const SurfaceMatch& match);
+  /// The view on `raster`, from the two places of `there` as they are estimated, if it fits
+  /// elsewhere and counts.
+  std::optional<LoopMatch> match(std::span<const Eigen::Vector2d> view, const SurfaceGrid& raster,
+                                 LoopMatch there);
   bool agree(const GaussianState& state, const LoopMatch& a, const LoopMatch& b) const;
   /// `match` and those before it that agree with it, each from another place.
   std::vector<LoopMatch> agreeing(const GaussianState& state, const LoopMatch& match) const;

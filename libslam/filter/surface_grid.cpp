@@ -2,7 +2,6 @@
 #include <array>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 #include <stdexcept>
 
 #include <opencv2/imgproc.hpp>
@@ -124,17 +123,12 @@ std::vector<SurfaceGrid::Turned> SurfaceGrid::turn(std::span<const Eigen::Vector
                                                    const Eigen::Vector3d& around,
                                                    double window) const {
   std::vector<Turned> all;
-  // In an order that leaps over the view, so that a sum of its first points tells much of the
-  // whole.
-  std::size_t leap = std::max<std::size_t>(1, view.size() * 5 / 8);
-  while (std::gcd(leap, view.size()) != 1) ++leap;
   const int steps = static_cast<int>(std::ceil(window / kTurn));
   for (int k = -steps; k <= steps; ++k) {
     Turned& turned = all.emplace_back();
     turned.heading = around.z() + k * kTurn;
     turned.cells.reserve(view.size());
-    for (std::size_t i = 0; i < view.size(); ++i) {
-      const Eigen::Vector2d& p = view[i * leap % view.size()];
+    for (const Eigen::Vector2d& p : view) {
       const cv::Point cell =
           cell_of(corner_, transform_point({around.x(), around.y(), turned.heading}, p));
       turned.cells.emplace_back(cell.x, cell.y);
@@ -212,7 +206,7 @@ void SurfaceGrid::survey(const std::vector<Turned>& turned, Survey& survey) cons
 std::optional<SurfaceMatch> SurfaceGrid::search(std::span<const Eigen::Vector2d> view,
                                                 const Eigen::Vector3d& T_grid_view,
                                                 const PoseWindow& window, double min_support,
-                                                double margin) const {
+                                                double margin, const Judge& worth_rivals) const {
   if (view.empty()) return std::nullopt;
   const double full = 255.0 * static_cast<double>(view.size());
   const std::vector<Turned> turned = turn(view, T_grid_view, window.heading);
@@ -221,16 +215,17 @@ std::optional<SurfaceMatch> SurfaceGrid::search(std::span<const Eigen::Vector2d>
   near.best.sum = static_cast<int>(min_support * full);
   survey(turned, near);
   if (!near.found) return std::nullopt;
-  // Rivals are many more than what may be the best one: a second survey, where there is one.
   const Block best = near.best;
-  near.shifts.clear();
-  near.margin = static_cast<int>((margin + kHidden) * full);
-  survey(turned, near);
   SurfaceMatch match;
   match.T_grid_view =
       refine(view, {T_grid_view.x() + kCell * best.x, T_grid_view.y() + kCell * best.y,
                     wrap_angle(turned[best.turned].heading)});
   match.score = score(view, match.T_grid_view);
+  if (!worth_rivals(match)) return match;
+  // Rivals are many more than what may be the best one: a second survey, where there is one.
+  near.shifts.clear();
+  near.margin = static_cast<int>((margin + kHidden) * full);
+  survey(turned, near);
   double rival_fit = 0.0;
   for (const Eigen::Vector3d& rival : rivals(near.shifts, best, turned, T_grid_view))
     rival_fit = std::max(rival_fit, fit(score(view, rival)));

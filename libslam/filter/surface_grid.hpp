@@ -9,6 +9,7 @@
 // Olson, "Real-time correlative scan matching", ICRA 2009; Hess et al., "Real-time loop closure in
 // 2D LIDAR SLAM", ICRA 2016 (the bound).
 
+#include <functional>
 #include <optional>
 #include <span>
 #include <utility>
@@ -45,6 +46,7 @@ struct SurfaceMatch {
 
 class SurfaceGrid {
  public:
+  using Judge = std::function<bool(const SurfaceMatch&)>;
   /// Row by row: y, then x.
   using Raster = Eigen::Matrix<unsigned char, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
@@ -53,10 +55,12 @@ class SurfaceGrid {
 
   ViewScore score(std::span<const Eigen::Vector2d> view, const Eigen::Vector3d& T_grid_view) const;
   /// The best pose in the window around `T_grid_view`; nothing if none has the support
-  /// `min_support`. Rivals are told if they come nearer than `margin`.
+  /// `min_support`. Rivals are told if they come nearer than `margin`, and only of a match that is
+  /// worth it: they cost the most.
   std::optional<SurfaceMatch> search(std::span<const Eigen::Vector2d> view,
                                      const Eigen::Vector3d& T_grid_view, const PoseWindow& window,
-                                     double min_support, double margin) const;
+                                     double min_support, double margin,
+                                     const Judge& worth_rivals) const;
   /// Climbs from `T_grid_view` to the best pose nearby.
   Eigen::Vector3d refine(std::span<const Eigen::Vector2d> view,
                          const Eigen::Vector3d& T_grid_view) const;

@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kSigmaRange = 0.02;  // [m]
 constexpr double kMinSupport = 0.55, kMargin = 0.1;
+const SurfaceGrid::Judge kAll = [](const SurfaceMatch&) { return true; };
 const PoseWindow kWindow{4.0, to_radians(20.0)};
 
 /// Scans along x, every half metre, in the frame of the world.
@@ -69,7 +70,7 @@ TEST(SurfaceGrid, FindsTheViewAgainFromAnywhereInTheWindow) {
                                    truth.y() + 3.5 * uniform(random),
                                    truth.z() + to_radians(18.0) * uniform(random));
     const auto match =
-        grid.search(view(plan, truth, random), estimate, kWindow, kMinSupport, kMargin);
+        grid.search(view(plan, truth, random), estimate, kWindow, kMinSupport, kMargin, kAll);
     ASSERT_TRUE(match) << "seed " << seed;
     const Eigen::Vector3d error = relative_pose(truth, match->T_grid_view);
     EXPECT_LT(error.head<2>().norm(), 0.1) << "seed " << seed;
@@ -90,8 +91,8 @@ TEST(SurfaceGrid, PrunesNothingThatCounts) {
     const auto points = view(plan, {12.0, 0.1, 0.02}, random);
     const PoseWindow window{1.5, to_radians(4.0)};
     const Eigen::Vector3d estimate(11.2, -0.8, 0.0);
-    const auto fast = grid.search(points, estimate, window, kMinSupport, kMargin);
-    const auto all = grid.search(points, estimate, window, kMinSupport, kMinSupport);
+    const auto fast = grid.search(points, estimate, window, kMinSupport, kMargin, kAll);
+    const auto all = grid.search(points, estimate, window, kMinSupport, kMinSupport, kAll);
     ASSERT_TRUE(fast && all);
     EXPECT_EQ(fast->T_grid_view, all->T_grid_view);
     EXPECT_EQ(fast->score.support, all->score.support);
@@ -105,7 +106,7 @@ TEST(SurfaceGrid, TellsThatACorridorIsAmbiguous) {
       std::mt19937_64 random(seed);
       const SurfaceGrid grid(drive(plan, {0, 0, 0}, 14.0, random));
       const auto match = grid.search(view(plan, {9.0, 0.0, 0.0}, random), {10.0, 0.5, 0.1}, kWindow,
-                                     kMinSupport, kMargin);
+                                     kMinSupport, kMargin, kAll);
       if (match) {
         EXPECT_LT(match->score.support - match->rival, kMargin) << "seed " << seed;
       }
@@ -119,7 +120,7 @@ TEST(SurfaceGrid, DoesNotFindAnotherBuilding) {
     std::mt19937_64 random(seed);
     const SurfaceGrid grid(drive(ring_corridor(seed), {4, 0, 0}, 10.0, random));
     const auto match = grid.search(view(ring_corridor(seed + 100), {12, 0, 0}, random),
-                                   {11.0, 0.5, 0.1}, kWindow, kMinSupport, kMargin);
+                                   {11.0, 0.5, 0.1}, kWindow, kMinSupport, kMargin, kAll);
     if (match && match->score.support - match->rival >= kMargin && match->score.contradicted <= 0.1)
       ++accepted;
   }
@@ -129,7 +130,7 @@ TEST(SurfaceGrid, DoesNotFindAnotherBuilding) {
 TEST(SurfaceGrid, NeedsPoints) {
   EXPECT_THROW(SurfaceGrid({}), std::invalid_argument);
   const SurfaceGrid grid(std::vector<SurfaceScan>{{{0, 0}, {{1, 0}}}});
-  EXPECT_FALSE(grid.search({}, {0, 0, 0}, kWindow, kMinSupport, kMargin));
+  EXPECT_FALSE(grid.search({}, {0, 0, 0}, kWindow, kMinSupport, kMargin, kAll));
   EXPECT_EQ(grid.score({}, {0, 0, 0}).support, 0.0);
 }
 
